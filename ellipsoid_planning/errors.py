@@ -1,0 +1,67 @@
+"""The exceptions of this package, all under one base class.
+
+Catch `EllipsoidPlanningError` to catch everything that a user's input can cause.
+"""
+
+from __future__ import annotations
+
+
+class EllipsoidPlanningError(Exception):
+    """Base class of every error that this package raises on purpose."""
+
+
+class GeometryError(EllipsoidPlanningError, ValueError):
+    """Numbers that describe no ellipsoid, robot or world, or an empty construction."""
+
+
+class ScenarioError(EllipsoidPlanningError):
+    """A scenario that cannot be read, or that asks for something impossible.
+
+    Attributes:
+        problem: what was expected, what came and the remedy, without the place.
+        file: path of the scenario file, None for a scenario built in Python.
+        field: dotted path such as ``robot.parts[1].semi_axes``, None for the whole file.
+        line: line in the file, counted from 1, None where it is not known.
+        column: column in that line, counted from 1, None where it is not known.
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        *,
+        file: str | None = None,
+        field: str | None = None,
+        line: int | None = None,
+        column: int | None = None,
+    ) -> None:
+        self.problem = problem
+        self.file = file
+        self.field = field
+        self.line = line
+        self.column = column
+        super().__init__(self._message())
+
+    def _message(self) -> str:
+        place = self.file or ""
+        if self.line is not None:
+            place += f":{self.line}" if place else f"line {self.line}"
+            place += f":{self.column}" if self.column is not None else ""
+        return ": ".join(part for part in (place, self.field, self.problem) if part)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        place = (self.file, self.field, self.line, self.column)
+        return _rebuild_scenario_error, (self.problem, *place)
+
+
+def _rebuild_scenario_error(
+    problem: str, file: str | None, field: str | None, line: int | None, column: int | None
+) -> ScenarioError:
+    return ScenarioError(problem, file=file, field=field, line=line, column=column)
+
+
+class PlannerError(EllipsoidPlanningError):
+    """An unknown planner, an unknown parameter, or a parameter out of its range."""
+
+
+class ResultError(EllipsoidPlanningError):
+    """A result file that cannot be read, or that contradicts itself."""

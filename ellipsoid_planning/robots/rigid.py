@@ -1,0 +1,94 @@
+"""Rigid robots: finite unions of ellipsoids that move together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.geometry.naming import numbered
+from ellipsoid_planning.geometry.orientation import (
+    check_rotation,
+    rotation_from_quaternion,
+    rotation_from_yaw,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class RigidRobot:
+    """A union of ellipsoids fixed to one base frame, free to turn or only to translate.
+
+    A configuration is a flat array: [x, y, yaw] (yaw in rad) in the plane, [x, y, z, qx, qy,
+    qz, qw] in space, and the position alone when the robot does not rotate.
+
+    Attributes:
+        parts: the ellipsoids in the base frame, at least one; unnamed ones are numbered.
+        rotates: False for a robot that only translates.
+        orientation: (n, n), base frame to world frame, of a robot that does not rotate;
+            the identity by default. A rotating robot has none.
+
+    Raises:
+        GeometryError: if there is no part, or the dimensions differ.
+    """
+
+    parts: tuple[Ellipsoid, ...]
+    rotates: bool = True
+    orientation: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parts", numbered(self.parts, "part"))
+        if not self.parts:
+            raise GeometryError("expected a robot of at least one part, got none")
+        dimensions = {part.dimension for part in self.parts}
+        if len(dimensions) > 1:
+            raise GeometryError(f"expected parts of one dimension, got {sorted(dimensions)}")
+        if self.rotates and self.orientation is not None:
+            raise GeometryError("a rotating robot has no fixed orientation; set rotates to False")
+        if not self.rotates:
+            self._fix_orientation()
+
+    def _fix_orientation(self) -> None:
+        given = np.eye(self.dimension) if self.orientation is None else self.orientation
+        orientation = check_rotation(given, self.dimension)
+        orientation.setflags(write=False)
+        object.__setattr__(self, "orientation", orientation)
+
+    @property
+    def dimension(self) -> int:
+        """The dimension n of the robot's world, 2 or 3."""
+        return self.parts[0].dimension
+
+    @property
+    def configuration_size(self) -> int:
+        """The length d of a configuration: n, or 3 (plane) and 7 (space) when rotating."""
+        if not self.rotates:
+            return self.dimension
+        return 3 if self.dimension == 2 else 7
+
+    def pose(self, configuration: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the base position (n,) and rotation (n, n), base to world, of a configuration.
+
+        A quaternion of any positive length is taken for the rotation it points at.
+        """
+        values = np.array(configuration, dtype=float)
+        if values.shape != (self.configuration_size,) or not np.all(np.isfinite(values)):
+            raise GeometryError(
+                f"expected a configuration of {self.configuration_size} finite numbers, "
+                f"got {values.tolist()}"
+            )
+        return values[: self.dimension], self._rotation(values)
+
+    def _rotation(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self.orientation is not None:
+            return self.orientation
+        if self.dimension == 2:
+            return rotation_from_yaw(float(values[2]))
+        return rotation_from_quaternion(values[3:])
+
+    def bodies_at(self, configuration: ArrayLike) -> tuple[Ellipsoid, ...]:
+        """Return the parts in the world frame at a configuration (d,)."""
+        position, rotation = self.pose(configuration)
+        return tuple(part.transform(rotation, position) for part in self.parts)

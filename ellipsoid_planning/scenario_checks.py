@@ -1,0 +1,117 @@
+"""Questions about a scenario that need geometry: does the robot fit, are start and goal free?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ellipsoid_planning.errors import GeometryError, ScenarioError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.geometry.minkowski import check_fits
+from ellipsoid_planning.scenario import Scenario
+from ellipsoid_planning.scenario_origin import Path
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.space import CSpace, Contact
+
+ROUNDING = 1e-12
+MOST_CONTACTS = 3
+
+
+def check_endpoints(scenario: Scenario, cspace: CSpace | None = None) -> None:
+    """Check that the robot can fit its arenas and that start and goal are valid.
+
+    Args:
+        scenario: the scenario to check.
+        cspace: its configuration space, if there is one already.
+
+    Raises:
+        ScenarioError: naming start or goal, the part, what it hits or leaves, and how deep.
+    """
+    check_fit(scenario)
+    space = scenario.cspace() if cspace is None else cspace
+    for which in ("start", "goal"):
+        contacts = space.explain(getattr(scenario, which))
+        if contacts:
+            raise scenario.origin.error((which,), _contacts_problem(which, contacts, scenario))
+
+
+def check_fit(scenario: Scenario) -> None:
+    """Check that every part can lie in every arena with the clearance asked for, somewhere.
+
+    Only what is certain is refused: a part that fits nowhere at any orientation that the
+    robot can take. Whether all parts fit together is left to the checks of start and goal.
+
+    Raises:
+        ScenarioError: naming the part, the arena, and by how much the part is too large.
+    """
+    for index, part in enumerate(scenario.robot.parts):
+        for arena in scenario.world.arenas:
+            check = _check_turning_part if scenario.robot.rotates else _check_fixed_part
+            check(scenario, part, arena, ("robot", "parts", index))
+
+
+def _check_turning_part(scenario: Scenario, part: Ellipsoid, arena: Ellipsoid, path: Path) -> None:
+    """A part fits at some orientation iff its sorted semi-axes are at most the arena's.
+
+    Necessary, since an ellipsoid inside another has the smaller sorted semi-axes (their shape
+    matrices are ordered); sufficient, since the axes can be aligned. The set within the
+    clearance of a part contains the ellipsoid whose semi-axes are longer by the clearance.
+    """
+    needed = np.sort(part.semi_axes) + scenario.clearance
+    given = np.sort(arena.semi_axes)
+    excess = needed - given
+    worst = int(np.argmax(excess))
+    if excess[worst] > ROUNDING * given[-1]:
+        ordinal = (
+            ("smallest", "middle", "largest") if part.dimension == 3 else ("smaller", "larger")
+        )
+        raise _too_large(
+            scenario,
+            path,
+            f"the {ordinal[worst]} semi-axis {_with_clearance(scenario)}of part {part.name!r} is "
+            f"{needed[worst]:g}, that of arena {arena.name!r} is {given[worst]:g}: the part is "
+            f"too large by {excess[worst]:.6g} at every orientation",
+        )
+
+
+def _check_fixed_part(scenario: Scenario, part: Ellipsoid, arena: Ellipsoid, path: Path) -> None:
+    orientation = scenario.robot.orientation
+    rotation = part.rotation if orientation is None else orientation @ part.rotation
+    grown = Ellipsoid(np.zeros_like(part.centre), rotation, part.semi_axes + scenario.clearance)
+    centred = Ellipsoid(np.zeros_like(arena.centre), arena.rotation, arena.semi_axes)
+    try:
+        check_fits(
+            centred.with_name(f"arena {arena.name!r}"), grown.with_name(f"part {part.name!r}")
+        )
+    except GeometryError as error:
+        raise _too_large(scenario, path, f"{_with_clearance(scenario)}{error}") from None
+
+
+def _with_clearance(scenario: Scenario) -> str:
+    return f"(with the clearance {scenario.clearance:g}) " if scenario.clearance else ""
+
+
+def _too_large(scenario: Scenario, path: Path, problem: str) -> ScenarioError:
+    return scenario.origin.error(
+        path, f"the robot cannot fit the arena: {problem}; shrink the part or enlarge the arena"
+    )
+
+
+def _contacts_problem(which: str, contacts: tuple[Contact, ...], scenario: Scenario) -> str:
+    texts = [_contact_text(contact) for contact in contacts[:MOST_CONTACTS]]
+    rest = len(contacts) - len(texts)
+    if rest > 0:
+        texts.append(f"{rest} more")
+    wanted = f" with the clearance {scenario.clearance:g}" if scenario.clearance else ""
+    return f"expected a free {which}{wanted}, but {'; '.join(texts)}; move the {which}"
+
+
+def _contact_text(contact: Contact) -> str:
+    amount = f"by {contact.depth:.6g}"
+    if contact.kind == "obstacle":
+        return f"part {contact.part!r} hits obstacle {contact.body!r} {amount}"
+    if contact.kind == "arena":
+        return f"part {contact.part!r} leaves arena {contact.body!r} {amount}"
+    return contact.message

@@ -1,0 +1,97 @@
+"""What pydantic found wrong with a scenario, in the words of the scenario format."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ellipsoid_planning.errors import ScenarioError
+from ellipsoid_planning.orientation_forms import PLANAR_FORMS, SPATIAL_FORMS
+from ellipsoid_planning.scenario_origin import Origin, Path
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+
+FORMS = PLANAR_FORMS + SPATIAL_FORMS
+VECTORS = ("semi_axes", "position", "low", "high")
+LONGEST_VALUE = 60
+
+# What was expected, and the remedy, by pydantic's error type.
+EXPECTATIONS: Mapping[str, tuple[str, str]] = {
+    "float_type": ("a number", "write it without quotes"),
+    "finite_number": ("a finite number", "write an ordinary number"),
+    "greater_than": ("a positive number", "give a length above zero"),
+    "greater_than_equal": ("a number that is not negative", "give zero or more"),
+    "string_type": ("text", "put it in quotes"),
+    "bool_type": ("true or false", "write one of them without quotes"),
+    "list_type": ("a list", "write it in brackets, [..., ...], or as lines that start with '-'"),
+    "model_type": ("a mapping", "write it as key: value pairs"),
+    "model_attributes_type": ("a mapping", "write it as key: value pairs"),
+    "dict_type": ("a mapping", "write it as key: value pairs"),
+    "invalid_key": ("keys that are text", "put the key in quotes"),
+}
+LITERALS: Mapping[str, tuple[str, str]] = {
+    "format": ("1", "this version reads format 1"),
+    "dimension": ("2 or 3", "give the dimension of the world"),
+}
+
+
+def scenario_error(error: ValidationError, origin: Origin) -> ScenarioError:
+    """Return the error for the first problem that pydantic reports, unknown keys before others."""
+    details = error.errors(include_url=False)
+    first = min(details, key=lambda item: item["type"] != "unknown_key")
+    path: Path = tuple(first["loc"])
+    context: Mapping[str, Any] = first.get("ctx") or {}
+    kind = first["type"]
+    if kind == "unknown_key":
+        return origin.error((*path, context["key"]), _unknown_key(context), at_key=True)
+    if kind in ("missing_key", "missing"):
+        key = context.get("key")
+        return origin.error((*path, key) if key else path, "this key is missing; add it")
+    if kind == "empty_key":
+        problem = "expected a value, got none; give one or leave the key out"
+        return origin.error((*path, context["key"]), problem, at_key=True)
+    return origin.error(path, _problem(kind, path, context, first["input"], first["msg"]))
+
+
+def _unknown_key(context: Mapping[str, Any]) -> str:
+    known = ", ".join(context["known"])
+    if context["close"]:
+        return f"unknown key; did you mean {context['close'][0]!r}? (known here: {known})"
+    return f"unknown key; expected one of {known}; remove it or correct its name"
+
+
+def _problem(kind: str, path: Path, context: Mapping[str, Any], value: Any, message: str) -> str:
+    if kind == "forms":
+        return _forms_problem(context["forms"])
+    if kind in ("too_short", "too_long"):
+        return _length_problem(path, context, len(value))
+    expectation = EXPECTATIONS.get(kind)
+    if kind == "literal_error" and path:
+        expectation = LITERALS.get(str(path[-1]))
+    if expectation is None:
+        return f"{message}, got {shown(value)}"
+    expected, remedy = expectation
+    return f"expected {expected}, got {shown(value)}; {remedy}"
+
+
+def _forms_problem(forms: list[str]) -> str:
+    got = "none" if not forms else " and ".join(forms)
+    return f"expected exactly one of {', '.join(FORMS)}, got {got}; keep one of them"
+
+
+def _length_problem(path: Path, context: Mapping[str, Any], length: int) -> str:
+    if path[-1] in VECTORS:
+        return f"expected as many numbers as the dimension, 2 or 3, got {length}"
+    if path[-1] == "parts":
+        return "expected at least one part, got none; give the robot a body"
+    return f"expected {context.get('min_length')} numbers, got {length}"
+
+
+def shown(value: Any) -> str:
+    """Return a value as a message shows it: short, and with YAML's words."""
+    words = {True: "true", False: "false"}
+    text = words[value] if isinstance(value, bool) else repr(value)
+    if isinstance(value, Mapping):
+        text = "a mapping"
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 1] + "…"

@@ -1,0 +1,141 @@
+"""The workspace of a spatial scenario: shaded bodies, painted from back to front."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.geometry import Ellipsoid
+from planners.view import colours
+from planners.view.camera import Camera, frame, side_view
+from planners.view.surfaces import ellipsoid_patches, tube_patches
+from planners.view.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ellipsoid_planning.scenario import Scenario
+
+SWEPT_POSES = 12
+LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the viewer
+AMBIENT = 0.5
+ARENA_AMBIENT = 0.85
+
+
+class Painting:
+    """Collects coloured patches and paints them on a pair of axes, the farthest first."""
+
+    def __init__(self, camera: Camera) -> None:
+        self.camera = camera
+        self._patches: list[NDArray[np.float64]] = []
+        self._colours: list[NDArray[np.float64]] = []
+
+    def add(self, patches: NDArray[np.float64], colour: str, inside: bool = False) -> None:
+        """Add patches (m, 4, 3) of a convex surface: the side that faces the viewer.
+
+        `inside` adds the far side instead, of which one sees the inner face, dimly shaded.
+        """
+        ambient = ARENA_AMBIENT if inside else AMBIENT
+        seen = self.camera.axes(patches.reshape(-1, 3)).reshape(-1, 4, 3)
+        normals = np.cross(seen[:, 2] - seen[:, 0], seen[:, 3] - seen[:, 1])
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = normals / np.where(length > 0.0, length, 1.0)
+        if inside:
+            normals = -normals
+        facing = normals[:, 2] > 0.0
+        light = ambient + (1.0 - ambient) * np.clip(normals[facing] @ LIGHT, 0.0, 1.0)
+        self._patches.append(seen[facing])
+        self._colours.append(light[:, None] * np.array(colours.rgb(colour)))
+
+    def paint(self, axes: Axes, zorder: float, alpha: float = 1.0) -> None:
+        """Paint everything added so far, and forget it."""
+        from matplotlib.collections import PolyCollection
+
+        patches, shades = np.concatenate(self._patches), np.concatenate(self._colours)
+        order = np.argsort(patches[:, :, 2].mean(axis=1), kind="stable")
+        shades = np.column_stack([shades, np.full(len(shades), alpha)])[order]
+        # Opaque patches get an edge of their own colour, or the background shows between them.
+        edges = shades if alpha == 1.0 else "none"
+        axes.add_collection(
+            PolyCollection(
+                list(patches[order, :, :2]),
+                facecolors=shades,
+                edgecolors=edges,
+                linewidths=0.4,
+                zorder=zorder,
+                antialiased=alpha == 1.0,
+            )
+        )
+        self._patches, self._colours = [], []
+
+
+def workspace_camera(scenario: Scenario) -> Camera:
+    """Return the camera of `draw_workspace`; axes(points)[:, :2] are its data coordinates."""
+    world, robot = scenario.world, scenario.robot
+    still = [*robot.bodies_at(scenario.start), *robot.bodies_at(scenario.goal)]
+    bodies = [*world.arenas, *world.obstacles, *still]
+    points = np.concatenate([body.surface_points(200) for body in bodies])
+    return frame(points, side_view(scenario.start[:3], scenario.goal[:3]))
+
+
+def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None) -> None:
+    """Draw arena, obstacles, the robot at start and goal, and swept along the path if given.
+
+    The view is a parallel projection along `workspace_camera`; the arena is open to the viewer.
+    """
+    world, robot = scenario.world, scenario.robot
+    painting = Painting(workspace_camera(scenario))
+    axes.set_title("Workspace")
+    if world.arenas:
+        _add_bodies(painting, world.arenas, colours.tint(colours.ARENA, 0.6), inside=True)
+        painting.paint(axes, 1, 1.0 if len(world.arenas) == 1 else 0.5)
+    else:
+        _draw_floor(axes, painting.camera, scenario)
+    _add_bodies(painting, world.obstacles, colours.tint(colours.OBSTACLE, 0.3))
+    if trajectory is not None:
+        _add_swept(painting, scenario, trajectory)
+    _add_bodies(painting, robot.bodies_at(scenario.start), colours.START)
+    _add_bodies(painting, robot.bodies_at(scenario.goal), colours.GOAL)
+    painting.paint(axes, 3)
+    axes.set_aspect("equal", anchor="N")
+    axes.autoscale_view()
+    axes.set_axis_off()
+
+
+def _add_bodies(
+    painting: Painting, bodies: Iterable[Ellipsoid], colour: str, inside: bool = False
+) -> None:
+    for body in bodies:
+        painting.add(ellipsoid_patches(body, 64, 32), colour, inside)
+
+
+def _add_swept(painting: Painting, scenario: Scenario, trajectory: Trajectory) -> None:
+    for configuration in trajectory.evenly(SWEPT_POSES)[1:-1]:
+        for body in scenario.robot.bodies_at(configuration):
+            painting.add(ellipsoid_patches(body, 40, 20), colours.tint(colours.ROBOT, 0.45))
+    positions = trajectory.configurations[:, :3]
+    radius = 0.003 * painting.camera.distance
+    painting.add(tube_patches(positions, radius, sides=6), colours.PATH)
+
+
+def _draw_floor(axes: Axes, camera: Camera, scenario: Scenario) -> None:
+    """Draw the bottom of the bounds, and the obstacles' shadows on it."""
+    from matplotlib.patches import Polygon
+
+    low, high = scenario.world.low, scenario.world.high
+    corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
+    floor = np.array([(x, y, low[2]) for x, y in corners])
+    axes.add_patch(
+        Polygon(camera.axes(floor)[:, :2], facecolor=colours.OUTSIDE, edgecolor=colours.FRAME)
+    )
+    for body in scenario.world.obstacles:
+        # A shadow is the body pressed flat; its outline is the pressed outline seen from above.
+        angle = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
+        normals = np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])
+        shadow = np.clip(body.support_points(normals), low, high)
+        shadow[:, 2] = low[2]
+        fill = colours.tint(colours.OBSTACLE, 0.5)
+        axes.add_patch(Polygon(camera.axes(shadow)[:, :2], facecolor=fill, linewidth=0, zorder=2))

@@ -1,0 +1,70 @@
+"""Surfaces as four-cornered patches, for drawing."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.geometry import Ellipsoid
+
+
+def ellipsoid_patches(
+    body: Ellipsoid, longitudes: int = 32, latitudes: int = 16
+) -> NDArray[np.float64]:
+    """Return the patches of a 3-D ellipsoid, (m, 4, 3), corners anticlockwise from outside."""
+    azimuth = np.linspace(0.0, 2.0 * np.pi, longitudes + 1)
+    polar = np.linspace(0.0, np.pi, latitudes + 1)
+    ball = np.stack(
+        [
+            np.outer(np.sin(polar), np.cos(azimuth)),
+            np.outer(np.sin(polar), np.sin(azimuth)),
+            np.outer(np.cos(polar), np.ones_like(azimuth)),
+        ],
+        axis=-1,
+    )
+    return _patches(body.centre + ball @ body.matrix.T)
+
+
+def tube_patches(
+    points: NDArray[np.float64], radius: float, sides: int = 10
+) -> NDArray[np.float64]:
+    """Return the patches of a tube around a polyline (k, 3), (m, 4, 3), with rounded corners.
+
+    Each segment is a cylinder and each point a small ball, so that corners have no gaps.
+    """
+    pieces = [
+        ellipsoid_patches(Ellipsoid.from_semi_axes([radius] * 3, point), sides, sides // 2)
+        for point in points
+    ]
+    for first, second in pairwise(points):
+        if np.linalg.norm(second - first) > 1e-9 * radius:
+            pieces.append(_cylinder_patches(first, second, radius, sides))
+    return np.concatenate(pieces)
+
+
+def triangles(patches: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return vertices (4m, 3) and triangles (2m, 3) of patches (m, 4, 3)."""
+    first = 4 * np.arange(len(patches))[:, None]
+    corners = np.concatenate([first + np.array([0, 1, 2]), first + np.array([0, 2, 3])])
+    return patches.reshape(-1, 3), corners
+
+
+def _cylinder_patches(
+    first: NDArray[np.float64], second: NDArray[np.float64], radius: float, sides: int
+) -> NDArray[np.float64]:
+    along = (second - first) / np.linalg.norm(second - first)
+    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    across /= np.linalg.norm(across)
+    angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
+    ring = radius * (
+        np.outer(np.cos(angle), across) + np.outer(np.sin(angle), np.cross(along, across))
+    )
+    return _patches(np.stack([second + ring, first + ring]))
+
+
+def _patches(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the cells (r*c, 4, 3) of a grid (r+1, c+1, 3) of points."""
+    corners = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])
+    return np.stack(corners, axis=2).reshape(-1, 4, 3)

@@ -1,0 +1,78 @@
+"""A path followed at constant speed, sampled for drawing and animation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class InterpolatedSpace(Protocol):
+    """What a trajectory needs of a `CSpace`: OMPL's metric and OMPL's interpolation."""
+
+    def distance(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float: ...
+
+    def interpolate(
+        self, first: NDArray[np.float64], second: NDArray[np.float64], s: float
+    ) -> NDArray[np.float64]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Samples along a path.
+
+    Attributes:
+        configurations: (m, d); every corner of the path is among them.
+        travelled: (m,), the length from the start in OMPL's metric, non-decreasing.
+    """
+
+    configurations: NDArray[np.float64]
+    travelled: NDArray[np.float64]
+
+    @property
+    def fractions(self) -> NDArray[np.float64]:
+        """The travelled length as a fraction of the whole, (m,); zeros for a path of length 0."""
+        length = self.travelled[-1]
+        return self.travelled / length if length > 0.0 else np.zeros_like(self.travelled)
+
+    def evenly(self, count: int) -> NDArray[np.float64]:
+        """Return up to `count` of the samples, evenly spaced in the metric, both ends included."""
+        wanted = np.linspace(0.0, 1.0, count)
+        return self.configurations[nearest_indices(self.fractions, wanted)]
+
+
+def nearest_indices(
+    ascending: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> NDArray[np.intp]:
+    """Return the distinct indices of the entries of `ascending` (m,) nearest to `wanted` (k,)."""
+    right = np.clip(np.searchsorted(ascending, wanted), 1, max(len(ascending) - 1, 1))
+    right = np.minimum(right, len(ascending) - 1)
+    left = np.maximum(right - 1, 0)
+    closer_left = wanted - ascending[left] <= ascending[right] - wanted
+    return np.unique(np.where(closer_left, left, right))
+
+
+def follow(
+    space: InterpolatedSpace, configurations: Sequence[ArrayLike] | ArrayLike, samples: int = 400
+) -> Trajectory:
+    """Follow a path (k, d), interpolating exactly as OMPL does.
+
+    Each motion gets its share of about `samples` samples by its length in OMPL's metric.
+    """
+    corners = np.atleast_2d(np.asarray(configurations, dtype=float))
+    lengths = [space.distance(first, second) for first, second in pairwise(corners)]
+    total = sum(lengths)
+    points, travelled = [corners[0]], [0.0]
+    for (first, second), length in zip(pairwise(corners), lengths, strict=True):
+        steps = max(1, round(samples * length / total)) if total > 0.0 else 1
+        begin = travelled[-1]
+        for step in range(1, steps):
+            points.append(np.asarray(space.interpolate(first, second, step / steps)))
+            travelled.append(begin + length * step / steps)
+        points.append(second)
+        travelled.append(begin + length)
+    return Trajectory(np.array(points), np.array(travelled))

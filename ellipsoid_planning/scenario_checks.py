@@ -13,7 +13,7 @@ from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.scenario_origin import Path
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.cspace.space import CSpace, Contact
+    from ellipsoid_planning.cspace.space import Contact, CSpace
 
 ROUNDING = 1e-12
 MOST_CONTACTS = 3
@@ -114,4 +114,4 @@ def _contact_text(contact: Contact) -> str:
         return f"part {contact.part!r} hits obstacle {contact.body!r} {amount}"
     if contact.kind == "arena":
         return f"part {contact.part!r} leaves arena {contact.body!r} {amount}"
-    return contact.message
+    return str(contact.message)

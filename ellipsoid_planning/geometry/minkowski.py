@@ -55,7 +55,9 @@ def minkowski_difference_boundary(
 ) -> NDArray[np.float64]:
     """Return the points (k, n), k <= m, of the difference's boundary with the given normals.
 
-    Normals whose point is on a swallow-tail, outside the difference, give no point.
+    Normals whose point is on a swallow-tail, outside the difference, give no point. In a very
+    flat arena few or none of evenly spread normals give one: their points crowd at the rim. To
+    draw such a difference use `minkowski_difference_boundary_by_offset`.
 
     Raises:
         GeometryError: if the difference is empty, the dimensions differ or a direction is zero.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SAFE_ASPECT = 4.0 / 3.0  # a window at least this wide shows the whole scene
-MARGIN = 1.06
+MARGIN = 1.12
 FIELD_OF_VIEW_DEG = 30.0
 ELEVATION_DEG = 32.0
 DEFAULT_AZIMUTH_DEG = -60.0

@@ -102,7 +102,7 @@ def _across(scenario: Scenario) -> int:
 def _panel_height(view: LayerSlice) -> float:
     """Return the height [inches] at which the layer fills its half of the figure's width."""
     across, up = np.ptp(view.bounds, axis=0)
-    return float(np.clip(0.44 * WIDTH * up / across + 1.3, 3.5, 6.5))
+    return float(np.clip(0.44 * WIDTH * up / across + 1.6, 3.8, 6.6))
 
 
 def _check_format(output: Path) -> None:

@@ -20,7 +20,7 @@ def draw_clearance(
     required: float = 0.0,
 ) -> None:
     """Draw distances (m,) over the travelled length (m,) and, if positive, the required one."""
-    axes.set_title("Minimum distance along the path")
+    axes.set_title("Minimum distance along the path", loc="left", fontsize=11)
     axes.set_xlabel("travelled length in OMPL's metric", fontsize=9)
     axes.tick_params(labelsize=8)
     for side in ("top", "right"):

@@ -31,7 +31,7 @@ def draw_layer(axes: Axes, view: LayerSlice, marked: str, lines: int = LINES) ->
     colour = colours.START if marked == "start" else colours.ROBOT
     dot = {"markersize": 8, "markeredgecolor": "white", "zorder": 6}
     axes.plot(*view.point, "o", color=colour, label=marked, **dot)  # type: ignore[arg-type]
-    axes.set_title(_title(view))
+    axes.set_title(_title(view), loc="left", fontsize=11)
     across, up = "xyz"[view.across], "xyz"[view.cspace.dimension - 1]
     axes.set_xlabel(f"{across} of the robot's base", fontsize=9)
     axes.set_ylabel(f"{up} of the robot's base", fontsize=9)
@@ -39,7 +39,15 @@ def draw_layer(axes: Axes, view: LayerSlice, marked: str, lines: int = LINES) ->
     (left, bottom), (right, top) = view.bounds
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4, fontsize=8, frameon=False)
+    axes.legend(
+        loc="upper right",
+        bbox_to_anchor=(1.02, -0.1),
+        ncols=4,
+        fontsize=8,
+        frameon=False,
+        columnspacing=1.2,
+        handletextpad=0.5,
+    )
 
 
 def _draw_regions(axes: Axes, view: LayerSlice) -> None:

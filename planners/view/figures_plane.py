@@ -23,7 +23,7 @@ SWEPT_POSES = 24
 def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None) -> None:
     """Draw arena, obstacles, the robot at start and goal, and swept along the path if given."""
     world, robot = scenario.world, scenario.robot
-    axes.set_title("Workspace")
+    axes.set_title("Workspace", loc="left", fontsize=11)
     if not world.arenas:
         draw_bounds(axes, scenario)
     for arena in world.arenas:

@@ -88,7 +88,7 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     """
     world, robot = scenario.world, scenario.robot
     painting = Painting(workspace_camera(scenario))
-    axes.set_title("Workspace")
+    axes.set_title("Workspace", loc="left", fontsize=11)
     if world.arenas:
         _add_bodies(painting, world.arenas, colours.tint(colours.ARENA, 0.6), inside=True)
         painting.paint(axes, 1, 1.0 if len(world.arenas) == 1 else 0.5)

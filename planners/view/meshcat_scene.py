@@ -66,12 +66,14 @@ class Scene:
     Attributes:
         commands: meshcat's drawing commands, packed.
         camera: the camera that the commands set, in the scenario's coordinates.
+        embedding: how planar bodies became solids.
         folders: the names of the switchable groups, each with its colour, in drawing order.
         hidden: those of the folders that are hidden at first.
     """
 
     commands: tuple[bytes, ...]
     camera: Camera
+    embedding: Embedding
     folders: tuple[tuple[str, str], ...]
     hidden: tuple[str, ...]
 
@@ -116,6 +118,7 @@ class _SceneBuilder:
         return Scene(
             tuple(self.recorder.commands),
             self.camera,
+            self.embedding,
             tuple(self.folders),
             tuple(name for name in hidden if name in names),
         )

@@ -1,0 +1,39 @@
+"""Proofs of whole paths, whoever planned them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.result import PathResult
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.space import CSpace
+
+
+def is_certified(cspace: CSpace, configurations: NDArray[np.float64]) -> bool:
+    """Whether every state and every segment of a path (m, d) is proved free, in continuous time."""
+    if len(configurations) == 1:
+        return bool(cspace.is_valid(configurations[0]))
+    pairs = zip(configurations[:-1], configurations[1:], strict=True)
+    return all(cspace.is_motion_valid(first, second) for first, second in pairs)
+
+
+def path_clearance(cspace: CSpace, configurations: NDArray[np.float64]) -> float:
+    """Proved lower bound of the clearance along a path (m, d); not positive if not certified."""
+    if len(configurations) == 1:
+        return float(cspace.clearance(configurations[0]))
+    pairs = zip(configurations[:-1], configurations[1:], strict=True)
+    return min(float(cspace.motion_clearance(first, second)) for first, second in pairs)
+
+
+def path_result(cspace: CSpace, configurations: NDArray[np.float64]) -> PathResult:
+    """A path (m, d) with its length, base travel, proved clearance and certificate."""
+    return PathResult.from_configurations(
+        cspace.robot,
+        configurations,
+        min_clearance=path_clearance(cspace, configurations),
+        certified=is_certified(cspace, configurations),
+    )

@@ -1,0 +1,244 @@
+"""The planners that can be named, and the parameters that each of them takes.
+
+The bindings' `params()` raises TypeError, so the setters that exist are listed here, under OMPL's
+own parameter names. Planners of our own, and OMPL itself, are imported only when one is allocated.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ellipsoid_planning.errors import PlannerError
+
+if TYPE_CHECKING:
+    from ompl import base as ob
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a bound planner: the setter that takes it, and the type it wants."""
+
+    setter: str
+    kind: type
+
+
+@dataclass(frozen=True)
+class BoundPlanner:
+    """A planner of OMPL's.
+
+    Attributes:
+        name: its class in ``ompl.geometric``.
+        parameters: by OMPL's parameter names.
+        second_thread: it runs a second thread. Then a Python objective, a Python goal region or
+            a termination condition made from a Python function deadlocks, and an exception in
+            a callback aborts the process; Python checkers, motion validators and samplers with
+            C++ objectives and conditions are fine.
+        needs_plugin: it works with our own checker only.
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    second_thread: bool = False
+    needs_plugin: bool = False
+
+    def parameter_kinds(self) -> dict[str, Any]:
+        """The type of every parameter."""
+        return {name: parameter.kind for name, parameter in self.parameters.items()}
+
+    def allocate(self, si: ob.SpaceInformation, values: Mapping[str, Any]) -> ob.Planner:
+        """A new planner with ``values`` set; they must have gone through `checked_parameters`."""
+        from .bindings import allocate_bound_planner
+
+        planner = allocate_bound_planner(self.name, si)
+        for name, value in values.items():
+            _set(self.name, name, value, getattr(planner, self.parameters[name].setter))
+        return planner
+
+
+@dataclass(frozen=True)
+class OwnPlanner:
+    """A planner of ours: a class whose parameters are the attributes listed in ``PARAMETERS``.
+
+    Attributes:
+        name: the class.
+        module: where it lives; imported on first use.
+    """
+
+    name: str
+    module: str
+    second_thread: bool = False
+    needs_plugin: bool = True
+
+    def load(self) -> Any:
+        """The class itself."""
+        return getattr(importlib.import_module(self.module), self.name)
+
+    def parameter_kinds(self) -> dict[str, Any]:
+        """The type (or tuple of types) of every parameter."""
+        return dict(self.load().PARAMETERS)
+
+    def allocate(self, si: ob.SpaceInformation, values: Mapping[str, Any]) -> ob.Planner:
+        """A new planner with ``values`` set; they must have gone through `checked_parameters`."""
+        planner: ob.Planner = self.load()(si)
+        for name, value in values.items():
+            _set(self.name, name, value, lambda v, n=name: setattr(planner, n, v))
+        return planner
+
+
+PlannerEntry = BoundPlanner | OwnPlanner
+
+
+def _table(kind: type, **setters: str) -> dict[str, Parameter]:
+    return {name: Parameter(setter, kind) for name, setter in setters.items()}
+
+
+_RANGE = _table(float, range="setRange")
+_BIAS = _table(float, goal_bias="setGoalBias")
+_INTERMEDIATE = _table(bool, intermediate_states="setIntermediateStates")
+_CELLS = _table(
+    float, border_fraction="setBorderFraction", min_valid_path_fraction="setMinValidPathFraction"
+)
+_CELL_FAILURE = _table(
+    float, failed_expansion_score_factor="setFailedExpansionCellScoreFactor"
+)
+_NEIGHBOURS = _table(int, max_nearest_neighbors="setMaxNearestNeighbors")
+_RRT_STAR = {
+    **_RANGE,
+    **_BIAS,
+    **_table(float, rewire_factor="setRewireFactor", prune_threshold="setPruneThreshold"),
+    **_table(int, ordering_batch_size="setBatchSize", number_sampling_attempts="setNumSamplingAttempts"),
+    **_table(
+        bool,
+        use_k_nearest="setKNearest",
+        delay_collision_checking="setDelayCC",
+        tree_pruning="setTreePruning",
+        pruned_measure="setPrunedMeasure",
+        informed_sampling="setInformedSampling",
+        sample_rejection="setSampleRejection",
+        new_state_rejection="setNewStateRejection",
+        use_admissible_heuristic="setAdmissibleCostToCome",
+        ordered_sampling="setOrderedSampling",
+        focus_search="setFocusSearch",
+    ),
+}
+_BIT_STAR = {
+    **_table(
+        float,
+        rewire_factor="setRewireFactor",
+        prune_threshold_as_fractional_cost_change="setPruneThresholdFraction",
+    ),
+    **_table(int, samples_per_batch="setSamplesPerBatch"),
+    **_table(
+        bool,
+        use_k_nearest="setUseKNearest",
+        use_graph_pruning="setPruning",
+        use_strict_queue_ordering="setStrictQueueOrdering",
+        delay_rewiring_to_first_solution="setDelayRewiringUntilInitialSolution",
+        use_just_in_time_sampling="setJustInTimeSampling",
+        drop_unconnected_samples_on_prune="setDropSamplesOnPrune",
+        stop_on_each_solution_improvement="setStopOnSolnImprovement",
+        find_approximate_solutions="setConsiderApproximateSolutions",
+    ),
+}
+_FMT = {
+    **_table(int, num_samples="setNumSamples"),
+    **_table(float, radius_multiplier="setRadiusMultiplier", free_space_volume="setFreeSpaceVolume"),
+    **_table(
+        bool,
+        use_k_nearest="setNearestK",
+        cache_cc="setCacheCC",
+        heuristics="setHeuristics",
+        extended_fmt="setExtendedFMT",
+    ),
+}
+
+_ENTRIES: tuple[PlannerEntry, ...] = (
+    OwnPlanner("HighwayRoadmap", "planners.highway"),
+    BoundPlanner("AORRTC", _RANGE),
+    BoundPlanner("BFMT", _FMT),
+    BoundPlanner("BITstar", _BIT_STAR),
+    BoundPlanner("BKPIECE1", {**_RANGE, **_CELLS, **_CELL_FAILURE}),
+    BoundPlanner("FMT", _FMT),
+    BoundPlanner("InformedRRTstar", _RRT_STAR),
+    BoundPlanner("KPIECE1", {**_RANGE, **_BIAS, **_CELLS, **_CELL_FAILURE}),
+    BoundPlanner("LBKPIECE1", {**_RANGE, **_CELLS}),
+    BoundPlanner("PRM", _NEIGHBOURS, second_thread=True),
+    BoundPlanner("PRMstar", second_thread=True),
+    BoundPlanner("RRT", {**_RANGE, **_BIAS, **_INTERMEDIATE}),
+    BoundPlanner("RRTConnect", {**_RANGE, **_INTERMEDIATE}),
+    BoundPlanner("RRTstar", _RRT_STAR),
+    BoundPlanner("SORRTstar", _RRT_STAR),
+)
+_BY_NAME = {entry.name: entry for entry in _ENTRIES}
+
+
+def planner_names() -> tuple[str, ...]:
+    """The names of all planners, our own first."""
+    return tuple(_BY_NAME)
+
+
+def find_planner(name: str) -> PlannerEntry:
+    """The entry of a planner.
+
+    Raises:
+        PlannerError: no planner has this name; the message suggests the closest ones.
+    """
+    if name in _BY_NAME:
+        return _BY_NAME[name]
+    raise PlannerError(f"unknown planner {name!r}{_hint(name, _BY_NAME)}")
+
+
+def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[str, Any]:
+    """``values`` with every name known to the planner and every value of its type.
+
+    Raises:
+        PlannerError: unknown parameter (the message suggests the closest), or a wrong type.
+    """
+    kinds = entry.parameter_kinds()
+    for name in values:
+        if name not in kinds:
+            raise PlannerError(f"{entry.name} has no parameter {name!r}{_hint(name, kinds)}")
+    return {
+        name: _converted(f"{entry.name}.{name}", value, kinds[name])
+        for name, value in values.items()
+    }
+
+
+def _converted(where: str, value: Any, kind: Any) -> Any:
+    if kind is float and _is_number(value):
+        return float(value)
+    if kind is int and _is_number(value) and float(value).is_integer():
+        return int(value)
+    if kind not in (int, float) and isinstance(value, kind):
+        return value
+    kinds = kind if isinstance(kind, tuple) else (kind,)
+    expected = " or ".join("None" if k is type(None) else k.__name__ for k in kinds)
+    raise PlannerError(f"{where}: expected {expected}, got {value!r}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _set(planner: str, name: str, value: Any, setter: Any) -> None:
+    try:
+        setter(value)
+    except PlannerError:
+        raise
+    except (TypeError, ValueError, RuntimeError, OverflowError) as error:
+        reason = str(error).splitlines()[0]
+        raise PlannerError(f"{planner}.{name}: {value!r} is refused: {reason}") from error
+
+
+def _hint(name: str, known: Iterable[str]) -> str:
+    names = list(known)
+    lowered = {known_name.lower(): known_name for known_name in names}
+    close = difflib.get_close_matches(name.lower(), lowered, n=3, cutoff=0.5)
+    if close:
+        return "; did you mean " + " or ".join(lowered[match] for match in close) + "?"
+    return f"; known: {', '.join(names)}" if names else "; it takes none"

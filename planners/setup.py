@@ -1,0 +1,94 @@
+"""Everything installed: from a scenario, or into a user's own space information."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from ompl import base as ob
+from ompl import geometric as og
+
+from ellipsoid_planning.errors import PlannerError
+
+from .bindings import set_seed
+from .motion import CertifiedMotionValidator
+from .sampler import install_free_interval_sampler
+from .spaces import check_space, state_space, write_configuration
+from .validity import EllipsoidValidityChecker
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.scenario import Scenario
+
+Checker = Literal["plugin", "fcl"]
+CHECKERS: tuple[Checker, ...] = ("plugin", "fcl")
+
+
+def install(
+    si: ob.SpaceInformation,
+    cspace: CSpace,
+    checker: Checker = "plugin",
+    resolution: float | None = None,
+    uniform_sampling: bool = False,
+) -> None:
+    """Install a checker, and what goes with it, into a space information of one's own.
+
+    Args:
+        si: over the plain OMPL space of the robot (see `planners.spaces.state_space`), not set up.
+        cspace: of a world and a robot; no file is needed.
+        checker: "plugin" for exact validity, certified motions and collision-free sampling;
+            "fcl" for python-fcl and discrete motions.
+        resolution: for "fcl" alone, distance of the checked states along a motion as a fraction
+            of the space's extent; OMPL's default, 0.01, if None.
+        uniform_sampling: for "plugin" alone, draw valid states uniformly instead of favouring
+            narrow places.
+
+    Raises:
+        PlannerError: unknown checker, bad resolution, or a space that does not fit ``cspace``.
+    """
+    if checker == "plugin":
+        if resolution is not None:
+            raise PlannerError("resolution: certified motions have none; use it with checker 'fcl'")
+        check_space(si.getStateSpace(), cspace)
+        si.setStateValidityChecker(EllipsoidValidityChecker(si, cspace))
+        si.setMotionValidator(CertifiedMotionValidator(si, cspace))
+        install_free_interval_sampler(si, cspace, uniform_sampling)
+    elif checker == "fcl":
+        from .fcl import RESOLUTION, FclValidityChecker, check_motions_discretely
+
+        si.setStateValidityChecker(FclValidityChecker(si, cspace))
+        check_motions_discretely(si, RESOLUTION if resolution is None else resolution)
+    else:
+        raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
+
+
+def simple_setup(
+    scenario: Scenario,
+    checker: Checker = "plugin",
+    seed: int | None = None,
+    resolution: float | None = None,
+    uniform_sampling: bool = False,
+    cspace: CSpace | None = None,
+) -> og.SimpleSetup:
+    """An `og.SimpleSetup` with space, checker, motions, sampler, start and goal of ``scenario``.
+
+    Args:
+        scenario: what to plan for; its goal is an exact goal state.
+        checker: see `install`, as for ``resolution`` and ``uniform_sampling``.
+        seed: seeds OMPL's random numbers before anything random is made, unless None.
+        cspace: of the scenario, if it exists already.
+
+    Raises:
+        PlannerError: see `install` and `planners.bindings.set_seed`.
+    """
+    if seed is not None:
+        set_seed(seed)
+    cspace = scenario.cspace() if cspace is None else cspace
+    si = ob.SpaceInformation(state_space(cspace))
+    install(si, cspace, checker, resolution, uniform_sampling)
+    si.setup()
+    setup = og.SimpleSetup(si)
+    start, goal = si.allocState(), si.allocState()
+    write_configuration(start, scenario.start, cspace)
+    write_configuration(goal, scenario.goal, cspace)
+    setup.setStartAndGoalStates(start, goal)
+    return setup

@@ -1,0 +1,1 @@
+"""The configuration space of a robot among ellipsoids, characterised in closed form."""

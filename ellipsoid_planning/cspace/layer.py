@@ -1,0 +1,84 @@
+"""A layer of the C-space: everything but translation is fixed (thesis 6.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.kernels import layout, lines, placement, whitening
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.world import World
+
+Array = NDArray[np.float64]
+
+
+class Layer:
+    """The free space of one orientation, looked at along sweep lines.
+
+    What a line needs to know of a pair of bodies is computed once and remembered.
+
+    Attributes:
+        rotation: base frame to world frame, shape (n, n).
+    """
+
+    def __init__(
+        self, world: World, robot: RigidRobot, scene: Array, rotation: Array, quaternion: Array
+    ) -> None:
+        """Prepare the layer of ``rotation`` (n, n), whose quaternion (4,) is given too."""
+        self.rotation = rotation
+        self._world, self._robot, self._scene = world, robot, scene
+        parts, bodies = len(robot.parts), len(world.obstacles) + len(world.arenas)
+        self._placed = np.empty((parts, layout.PLACED))
+        placement.place(scene, 0.0, 0.0, 0.0, *quaternion, self._placed)
+        self._table = np.empty((max(parts * bodies, 1), whitening.WHITEN))
+        self._known = np.zeros(max(parts * bodies, 1), dtype=np.bool_)
+        self._scratch = np.empty((1, 9))
+
+    def free_intervals(self, position: ArrayLike, axis: int = -1) -> Array:
+        """Free intervals (k, 2) of the line through ``position`` (n,) along ``axis``.
+
+        They are values of the base's swept coordinate, sorted; every base position in them is
+        provably free at the clearance asked for. The swept coordinate of ``position`` is ignored.
+
+        Raises:
+            GeometryError: if the position or the axis does not fit the dimension.
+        """
+        n = self._world.dimension
+        point = np.zeros(3)
+        values = np.asarray(position, dtype=float)
+        if values.shape != (n,) or not -n <= axis < n:
+            raise GeometryError(
+                f"expected a position of {n} numbers and an axis in [{-n}, {n}), "
+                f"got shape {values.shape} and axis {axis}"
+            )
+        point[:n] = values
+        out = np.empty((lines.CAPACITY, 2))
+        count = lines.free_intervals(
+            self._scene, self._placed, self._table, self._known, self._scratch, axis % n, *point, out
+        )
+        return out[:count]
+
+    def obstacle_pairs(self) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
+        """Pairs (obstacle, part) whose Minkowski sum, part centred at 0, is a C-obstacle.
+
+        The obstacle is moved by minus the part's offset, so that the C-obstacle stands where the
+        base position must not be; the part is rotated and centred at the origin.
+        """
+        return self._pairs(self._world.obstacles)
+
+    def arena_pairs(self) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
+        """Pairs (arena, part) whose Minkowski difference must hold the base position."""
+        return self._pairs(self._world.arenas)
+
+    def _pairs(self, bodies: tuple[Ellipsoid, ...]) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
+        n = self._world.dimension
+        pairs = []
+        for part in self._robot.parts:
+            offset = self.rotation @ part.centre
+            turned = Ellipsoid(np.zeros(n), self.rotation @ part.rotation, part.semi_axes, part.name)
+            for body in bodies:
+                moved = Ellipsoid(body.centre - offset, body.rotation, body.semi_axes, body.name)
+                pairs.append((moved, turned))
+        return tuple(pairs)

@@ -1,0 +1,156 @@
+"""The configuration space of a robot in a world: what is free, proved."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.cspace.contacts import Contact, body_contacts, bound_contacts
+from ellipsoid_planning.cspace.layer import Layer
+from ellipsoid_planning.cspace.packing import pack_scene
+from ellipsoid_planning.cspace.poses import interpolate, poses, rotation_quaternion
+from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.kernels import layout, motion, validity
+from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.world import World
+
+Array = NDArray[np.float64]
+
+_CLEARANCE_SAMPLES = 33
+_CLEARANCE_PROOFS = 14
+
+
+class CSpace:
+    """A robot's configurations in a world, with proofs of what is free.
+
+    Whatever is called valid is proved so, rounding included; a free configuration or motion may be
+    refused only when its clearance is within about 1e-12 of the scene's size.
+
+    Attributes:
+        world, robot: what the space is made from.
+        clearance_required: distance that every valid configuration and motion keeps.
+        scene: the packed array that kernels read, read-only (kernels.layout).
+    """
+
+    def __init__(self, world: World, robot: RigidRobot, clearance: float = 0.0) -> None:
+        """Characterise the C-space.
+
+        Raises:
+            GeometryError: if the dimensions differ or the clearance is negative, not finite, or
+                leaves nothing of an arena.
+        """
+        if world.dimension != robot.dimension:
+            raise GeometryError(
+                f"expected a robot of the world's dimension {world.dimension}, "
+                f"got dimension {robot.dimension}"
+            )
+        if not 0.0 <= clearance < np.inf:
+            raise GeometryError(f"expected a clearance of at least 0, got {clearance}")
+        self.world, self.robot = world, robot
+        self.clearance_required = float(clearance)
+        self.scene = pack_scene(world, robot, self.clearance_required)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension n of the workspace, 2 or 3."""
+        return self.world.dimension
+
+    @property
+    def rotates(self) -> bool:
+        """Whether configurations have an orientation."""
+        return self.robot.rotates
+
+    @property
+    def tolerance(self) -> float:
+        """Clearance below which a free configuration or motion may be refused."""
+        return layout.TOLERANCE * float(self.scene[layout.SCALE])
+
+    def poses(self, configurations: ArrayLike) -> Array:
+        """Spatial poses (m, 7) of configurations (m, d) or (d,); see :mod:`cspace.poses`."""
+        return poses(self.robot, configurations)
+
+    def is_valid(self, configuration: ArrayLike) -> bool:
+        """Whether a configuration (d,) is provably free, in bounds and at the clearance."""
+        return bool(validity.configuration_is_free(self.scene, *self.poses(configuration)[0]))
+
+    def are_valid(self, configurations: ArrayLike) -> NDArray[np.bool_]:
+        """:meth:`is_valid` of every row of ``configurations`` (m, d), shape (m,)."""
+        rows = self.poses(configurations)
+        out = np.empty(len(rows), dtype=np.bool_)
+        validity.are_free(self.scene, rows, out)
+        return out
+
+    def clearance(self, configuration: ArrayLike) -> float:
+        """Proved lower bound of the distance to obstacles and arena boundaries.
+
+        Negative where they meet: minus the penetration along one direction, or −1 outside an
+        arena. Infinite in an empty world.
+        """
+        return float(validity.clearance_of(self.scene, *self.poses(configuration)[0]))
+
+    def explain(self, configuration: ArrayLike) -> tuple[Contact, ...]:
+        """Everything that makes a configuration (d,) invalid; empty if it is valid."""
+        values = np.asarray(configuration, dtype=float)
+        pose = self.poses(values)[0]
+        contacts = bound_contacts(self.world, values[: self.dimension])
+        contacts += body_contacts(self.world, self.robot, self.scene, pose, values)
+        return tuple(contacts)
+
+    def is_motion_valid(self, first: ArrayLike, second: ArrayLike) -> bool:
+        """Whether the motion between two configurations (d,) is proved free throughout.
+
+        The motion is OMPL's interpolation in continuous time; see kernels.motion.
+        """
+        return bool(self.are_motions_valid(first, second)[0])
+
+    def are_motions_valid(self, first: ArrayLike, second: ArrayLike) -> NDArray[np.bool_]:
+        """:meth:`is_motion_valid` of every pair of rows (m, d), shape (m,)."""
+        return self.motion_proofs(first, second) > 0
+
+    def motion_proofs(self, first: ArrayLike, second: ArrayLike) -> NDArray[np.int64]:
+        """Number of proofs that each motion took, shape (m,); negative if it was refused."""
+        begin, end = self.poses(first), self.poses(second)
+        counts = np.empty(len(begin), dtype=np.int64)
+        motion.motions_are_free(self.scene, begin, end, counts)
+        return counts
+
+    def motion_clearance(self, first: ArrayLike, second: ArrayLike) -> float:
+        """Proved lower bound of the clearance along a motion; negative if it is not proved free.
+
+        Within about 1e-3 of the smallest sampled clearance where proofs reach that far.
+        """
+        begin, end = self.poses(first)[0], self.poses(second)[0]
+        return float(
+            motion.motion_clearance(self.scene, begin, end, _CLEARANCE_SAMPLES, _CLEARANCE_PROOFS)
+        )
+
+    def interpolate(self, first: ArrayLike, second: ArrayLike, s: float) -> Array:
+        """The configuration (d,) at ``s`` in [0, 1] of OMPL's motion from first to second."""
+        return interpolate(self.robot, first, second, s)
+
+    def distance(self, first: ArrayLike, second: ArrayLike) -> float:
+        """OMPL's default distance of two configurations (d,)."""
+        return path_length(self.robot, np.array([first, second], dtype=float))
+
+    def layer(self, orientation: ArrayLike | None = None) -> Layer:
+        """The layer of a rotation (n, n), or of the orientation of a configuration (d,).
+
+        Raises:
+            GeometryError: if ``orientation`` is neither.
+        """
+        given = np.zeros(self.dimension) if orientation is None else np.asarray(orientation, float)
+        n = self.dimension
+        if given.shape == (n, n):
+            rotation = given
+        elif self.robot.orientation is not None:
+            rotation = self.robot.orientation
+        elif given.shape == (self.robot.configuration_size,):
+            rotation = self.robot.pose(given)[1]
+        else:
+            raise GeometryError(
+                f"expected a rotation ({n}, {n}) or a configuration of "
+                f"{self.robot.configuration_size} numbers, got shape {given.shape}"
+            )
+        quaternion = rotation_quaternion(rotation)
+        return Layer(self.world, self.robot, self.scene, rotation, quaternion)

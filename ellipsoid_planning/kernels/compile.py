@@ -1,0 +1,71 @@
+"""The one way kernels are compiled: lazily, cached on disk, and without fast-math.
+
+Numba's cache does not notice an edit in a *called* kernel of another file, so the cache folder is
+keyed by a hash of all kernel sources and of the numba and numpy versions.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+
+_SOURCES = Path(__file__).resolve().parent
+_CACHE_VARIABLE = "ELLIPSOID_PLANNING_CACHE"
+
+
+def _cache_root() -> Path:
+    if chosen := os.environ.get(_CACHE_VARIABLE):
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "ellipsoid-planning"
+
+
+def _source_key() -> str:
+    digest = hashlib.sha256(f"numba {numba.__version__} numpy {np.__version__}".encode())
+    for source in sorted(_SOURCES.glob("*.py")):
+        digest.update(source.name.encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _usable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def _cache_folder() -> Path:
+    name = f"kernels-{_source_key()}"
+    folder = _cache_root() / name
+    return folder if _usable(folder) else Path(tempfile.gettempdir()) / "ellipsoid-planning" / name
+
+
+CACHE_FOLDER = _cache_folder()
+
+
+def is_compiled() -> bool:
+    """Whether an earlier run on this machine has left compiled kernels in the cache."""
+    return any(CACHE_FOLDER.rglob("*.nbc"))
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Compile ``function`` lazily with numba, cached in :data:`CACHE_FOLDER`.
+
+    ``fastmath`` stays off because certificates rest on IEEE rounding; the numpy error model makes
+    divisions by zero give infinities instead of exceptions.
+    """
+    # The folder is read when the function is decorated; restoring it leaves other users of numba
+    # in this process alone.
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        return numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+    finally:
+        numba.config.CACHE_DIR = previous

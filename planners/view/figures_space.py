@@ -78,7 +78,7 @@ def workspace_camera(scenario: Scenario) -> Camera:
     still = [*robot.bodies_at(scenario.start), *robot.bodies_at(scenario.goal)]
     bodies = [*world.arenas, *world.obstacles, *still]
     points = np.concatenate([body.surface_points(200) for body in bodies])
-    return frame(points, side_view(scenario.start[:3], scenario.goal[:3]))
+    return frame(points, side_view(scenario.start, scenario.goal))
 
 
 def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None) -> None:

@@ -14,17 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.geometry import Ellipsoid
-from planners.view import colours
+from planners.view import colours, meshcat_shapes
 from planners.view.camera import FIELD_OF_VIEW_DEG, Camera, frame, side_view
-from planners.view.embedding import (
-    ABOVE,
-    FLOOR,
-    SOLID,
-    Embedding,
-    Slab,
-    outline,
-)
-from planners.view.surfaces import triangles, tube_patches
+from planners.view.embedding import ABOVE, FLOOR, SOLID, Embedding, Slab, outline
+from planners.view.meshcat_animation import animate
 from planners.view.trajectory import Trajectory, follow
 
 if TYPE_CHECKING:
@@ -33,30 +26,11 @@ if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
 
 ROOT = "scenario"
-ANIMATION_SECONDS = 8.0
-PAUSE_SECONDS = 1.0
-FRAMES_PER_SECOND = 30.0
-REPETITIONS = 1_000_000
+EYE_DISTANCE = 2.0  # at which meshcat's own lights suit the scene
 THICKNESS = 0.012  # of a planar body, as a part of the scene's size
 TUBE = 0.005  # radius of the path, as a part of the scene's size
+DOT = 0.01  # size of a roadmap's node, as a part of the eye's distance
 BACK_SIDE = 1  # three.js: draw the far wall only, so that the inside is visible
-
-
-class CommandRecorder:
-    """Stands in for the window of a meshcat `Visualizer` and keeps its commands.
-
-    Attributes:
-        commands: the packed commands, in the order in which they were given.
-    """
-
-    def __init__(self) -> None:
-        self.commands: list[bytes] = []
-
-    def send(self, command: Any) -> None:
-        """Keep a command of meshcat's."""
-        import umsgpack
-
-        self.commands.append(umsgpack.packb(command.lower()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,206 +59,145 @@ def build_scene(
     show_roadmap: bool = False,
 ) -> Scene:
     """Draw a scenario, with the path of a result and with a roadmap where they are given."""
-    return _SceneBuilder(scenario).build(result, roadmap, show_roadmap)
+    builder = _SceneBuilder(scenario)
+    builder.draw_world()
+    builder.draw_still_robot("start", scenario.start, colours.START)
+    builder.draw_still_robot("goal", scenario.goal, colours.GOAL)
+    hidden: tuple[str, ...] = ()
+    if roadmap is not None and len(roadmap.configurations):
+        builder.draw_roadmap(roadmap, show_roadmap)
+        hidden = () if show_roadmap else ("roadmap",)
+    if result is not None and result.path is not None:
+        builder.draw_motion(follow(scenario.cspace(), result.path.configurations))
+    return Scene(
+        tuple(builder.recorder.commands),
+        builder.camera,
+        builder.embedding,
+        tuple(builder.folders),
+        hidden,
+    )
 
 
 class _SceneBuilder:
     def __init__(self, scenario: Scenario) -> None:
-        from meshcat import Visualizer
-
-        self.scenario = scenario
         self.world, self.robot = scenario.world, scenario.robot
-        extent = _extent(scenario)
-        self.size = float(np.max(np.ptp(extent, axis=0)))
+        still = _still_points(scenario)
+        self.size = float(np.max(np.ptp(still, axis=0)))
         self.embedding = Embedding(self.world.dimension, THICKNESS * self.size)
-        self.camera = self._framed(extent)
-        self.recorder = CommandRecorder()
-        self.visualizer = Visualizer(window=self.recorder)["/" + ROOT]
+        azimuth = None if scenario.dimension == 2 else side_view(scenario.start, scenario.goal)
+        self.camera = frame(self.embedding.points(still, SOLID), azimuth)
+        self.recorder = meshcat_shapes.CommandRecorder()
+        self.visualizer = meshcat_shapes.recorded_visualizer(self.recorder)
+        self.root = self.visualizer["/" + ROOT]
         self.folders: list[tuple[str, str]] = []
+        self._set_surroundings()
 
-    def build(
-        self, result: PlanResult | None, roadmap: RoadmapGraph | None, show_roadmap: bool
-    ) -> Scene:
-        self._surroundings()
-        self._world()
-        self._still_robot("start", self.scenario.start, colours.START)
-        self._still_robot("goal", self.scenario.goal, colours.GOAL)
-        if roadmap is not None and len(roadmap.configurations):
-            self._roadmap(roadmap, show_roadmap)
-        if result is not None and result.path is not None:
-            self._motion(follow(self.scenario.cspace(), result.path.configurations))
-        hidden = ("roadmap",) if not show_roadmap else ()
-        names = [name for name, _ in self.folders]
-        return Scene(
-            tuple(self.recorder.commands),
-            self.camera,
-            self.embedding,
-            tuple(self.folders),
-            tuple(name for name in hidden if name in names),
-        )
+    def draw_world(self) -> None:
+        if self.world.arenas:
+            self._draw_arenas()
+        else:
+            self._draw_bounds()
+        if self.world.obstacles:
+            self._draw_bodies("obstacles", self.world.obstacles, colours.OBSTACLE, SOLID)
 
-    def _framed(self, extent: NDArray[np.float64]) -> Camera:
+    def draw_still_robot(self, name: str, configuration: NDArray[np.float64], colour: str) -> None:
+        # Pushed back a little in depth, so that the moving robot covers it without flicker.
+        behind = {"polygonOffset": True, "polygonOffsetFactor": 1.0, "polygonOffsetUnits": 2.0}
+        self._draw_bodies(name, self.robot.bodies_at(configuration), colour, SOLID, **behind)
+
+    def draw_motion(self, trajectory: Trajectory) -> None:
         n = self.world.dimension
-        azimuth = None if n == 2 else side_view(self.scenario.start[:n], self.scenario.goal[:n])
-        return frame(self.embedding.points(extent, SOLID), azimuth)
+        corners = _simplified(trajectory.configurations[:, :n])
+        self.folders.append(("path", colours.PATH))
+        self._draw_tube("path", self.embedding.points(corners), colours.PATH)
+        fixed = np.eye(n) if self.robot.orientation is None else self.robot.orientation
+        parts = [part.transform(fixed, np.zeros(n)) for part in self.robot.parts]
+        self._draw_bodies("robot", parts, colours.ROBOT, ABOVE)
+        animate(self.root["robot"], trajectory, self.embedding)
 
-    def _surroundings(self) -> None:
-        """Scale the scene to the size of meshcat's own lights, and set camera and background.
+    def draw_roadmap(self, roadmap: RoadmapGraph, visible: bool) -> None:
+        points = self.embedding.points(roadmap.configurations[:, : self.world.dimension])
+        node = self.root["roadmap"]
+        if len(roadmap.edges):
+            lines = meshcat_shapes.segments(points[np.asarray(roadmap.edges)], colours.ROADMAP)
+            node["edges"].set_object(lines)
+        node["nodes"].set_object(meshcat_shapes.dots(points, colours.ROADMAP, DOT * EYE_DISTANCE))
+        node.set_property("visible", visible)
+        self.folders.append(("roadmap", colours.ROADMAP))
+
+    def _set_surroundings(self) -> None:
+        """Scale the scene to the reach of meshcat's lights, and set camera and background.
 
         The centre of the scene becomes the origin, about which meshcat's mouse controls turn.
         """
-        scale = 2.0 / self.camera.distance
-        matrix = np.eye(4) * [scale, scale, scale, 1.0]
+        scale = EYE_DISTANCE / self.camera.distance
+        matrix = np.diag([scale, scale, scale, 1.0])
         matrix[:3, 3] = -scale * self.camera.centre
-        self.visualizer.set_transform(matrix)
+        self.root.set_transform(matrix)
         for name in ("/Grid", "/Axes"):
             self.visualizer[name].set_property("visible", False)
         self.visualizer["/Background"].set_property("top_color", [1.0, 1.0, 1.0])
         self.visualizer["/Background"].set_property("bottom_color", [0.93, 0.95, 0.97])
-        x, y, z = (float(v) for v in scale * self.camera.distance * self.camera.back)
+        x, y, z = (float(coordinate) for coordinate in EYE_DISTANCE * self.camera.back)
         # Straight above, the mouse controls would not know which way is up.
         tilt = 1e-4 if self.world.dimension == 2 else 0.0
-        node = self.visualizer["/Cameras/default/rotated/<object>"]
-        node.set_property("fov", FIELD_OF_VIEW_DEG)
-        node.set_property("near", 0.02)
-        node.set_property("position", [x, z, -y + tilt])  # this node counts y upwards
+        eye = self.visualizer["/Cameras/default/rotated/<object>"]
+        eye.set_property("fov", FIELD_OF_VIEW_DEG)
+        eye.set_property("near", 0.02)
+        eye.set_property("position", [x, z, -y + tilt])  # this node counts y upwards
 
-    def _world(self) -> None:
-        if self.world.arenas:
-            self._arenas()
-        else:
-            self._bounds()
-        if self.world.obstacles:
-            self._bodies("obstacles", self.world.obstacles, colours.OBSTACLE, SOLID)
-
-    def _arenas(self) -> None:
-        flat = self.world.dimension == 2
-        look = {"opacity": 0.25 if flat else 0.3, "depthWrite": False}
-        if not flat:
-            look["side"] = BACK_SIDE
-        self._bodies("arena", self.world.arenas, colours.ARENA, FLOOR, **look)
-        if flat:
-            for arena, name in _named(self.world.arenas, "arena"):
+    def _draw_arenas(self) -> None:
+        look: dict[str, Any] = {"opacity": 0.25, "depthWrite": False}
+        if self.world.dimension == 3:
+            look = {"opacity": 0.3, "depthWrite": False, "side": BACK_SIDE}
+        self._draw_bodies("arena", self.world.arenas, colours.ARENA, FLOOR, **look)
+        if self.world.dimension == 2:
+            for arena, name in _named(self.world.arenas):
                 ring = self.embedding.points(outline(arena), FLOOR)
-                self._tube(f"arena/{name} boundary", ring, colours.ARENA, closed=True, radius=0.6)
+                closed = np.concatenate([ring, ring[:1]])
+                self._draw_tube(f"arena/{name} boundary", closed, colours.ARENA)
 
-    def _bounds(self) -> None:
+    def _draw_bounds(self) -> None:
         self.folders.append(("bounds", colours.FRAME))
         for index, edge in enumerate(_box_edges(self.world.low, self.world.high)):
             points = self.embedding.points(edge, SOLID)
-            self._tube(f"bounds/edge {index}", points, colours.FRAME, radius=0.3)
+            self._draw_tube(f"bounds/edge {index}", points, colours.FRAME, 0.3)
 
-    def _still_robot(self, name: str, configuration: NDArray[np.float64], colour: str) -> None:
-        # Pushed back a little in depth, so that the moving robot covers it without flicker.
-        behind = {"polygonOffset": True, "polygonOffsetFactor": 1.0, "polygonOffsetUnits": 2.0}
-        self._bodies(name, self.robot.bodies_at(configuration), colour, SOLID, **behind)
-
-    def _motion(self, trajectory: Trajectory) -> None:
-        n = self.world.dimension
-        points = self.embedding.points(_simplified(trajectory.configurations[:, :n]))
-        self.folders.append(("path", colours.PATH))
-        self._tube("path", points, colours.PATH, radius=1.0 if n == 3 else 0.6)
-        fixed = np.eye(n) if self.robot.orientation is None else self.robot.orientation
-        parts = [part.transform(fixed, np.zeros(n)) for part in self.robot.parts]
-        self._bodies("robot", parts, colours.ROBOT, ABOVE)
-        self._animate(trajectory)
-
-    def _animate(self, trajectory: Trajectory) -> None:
-        from meshcat.animation import Animation
-
-        animation = Animation(default_framerate=FRAMES_PER_SECOND)
-        n = self.world.dimension
-        frames = trajectory.fractions * ANIMATION_SECONDS * FRAMES_PER_SECOND
-        for at, configuration in zip(frames, trajectory.configurations, strict=True):
-            frame_view = animation.at_frame(self.visualizer["robot"], float(at))
-            position = np.zeros(3)
-            position[:n] = configuration[:n]
-            frame_view.set_property("position", "vector3", position.tolist())
-            quaternion = self.embedding.quaternion(configuration)
-            if quaternion is not None:
-                frame_view.set_property("quaternion", "quaternion", quaternion.tolist())
-        end = float(frames[-1]) + PAUSE_SECONDS * FRAMES_PER_SECOND
-        animation.at_frame(self.visualizer["robot"], end).set_property(
-            "position", "vector3", position.tolist()
-        )
-        self.visualizer.set_animation(animation, repetitions=REPETITIONS)
-
-    def _roadmap(self, roadmap: RoadmapGraph, visible: bool) -> None:
-        from meshcat.geometry import LineBasicMaterial, LineSegments, PointsGeometry, PointsMaterial
-
-        points = self.embedding.points(roadmap.configurations[:, : self.world.dimension])
-        points = points.astype(np.float32)
-        node = self.visualizer["roadmap"]
-        if len(roadmap.edges):
-            ends = points[np.asarray(roadmap.edges).reshape(-1)]
-            material = LineBasicMaterial(colours.as_integer(colours.ROADMAP))
-            node["edges"].set_object(LineSegments(PointsGeometry(ends.T), material))
-        channels = np.tile(np.array(colours.rgb(colours.ROADMAP), np.float32), (len(points), 1))
-        dots = PointsMaterial(size=4.0 * TUBE * self.size * 2.0 / self.camera.distance)
-        node["nodes"].set_object(PointsGeometry(points.T, channels.T), dots)
-        node.set_property("visible", visible)
-        self.folders.append(("roadmap", colours.ROADMAP))
-
-    def _bodies(
+    def _draw_bodies(
         self, folder: str, bodies: Sequence[Ellipsoid], colour: str, slab: Slab, **look: Any
     ) -> None:
         self.folders.append((folder, colour))
-        material = _material(colour, **look)
-        for body, name in _named(bodies, folder):
-            node = self.visualizer[f"{folder}/{name}"]
-            node.set_object(_unit_shape(self.world.dimension), material)
+        shared = meshcat_shapes.material(colour, **look)
+        for body, name in _named(bodies):
+            node = self.root[f"{folder}/{name}"]
+            node.set_object(meshcat_shapes.unit_shape(self.world.dimension), shared)
             node.set_transform(self.embedding.matrix(body, slab))
 
-    def _tube(
-        self,
-        path: str,
-        points: NDArray[np.float64],
-        colour: str,
-        closed: bool = False,
-        radius: float = 1.0,
+    def _draw_tube(
+        self, path: str, points: NDArray[np.float64], colour: str, width: float = 1.0
     ) -> None:
-        from meshcat.geometry import TriangularMeshGeometry
-
-        line = np.concatenate([points, points[:1]]) if closed else points
-        patches = tube_patches(line, radius * TUBE * self.size, sides=8)
-        self.visualizer[path].set_object(
-            TriangularMeshGeometry(*triangles(patches)), _material(colour)
+        radius = width * TUBE * self.size * (1.0 if self.world.dimension == 3 else 0.6)
+        self.root[path].set_object(
+            meshcat_shapes.tube(points, radius), meshcat_shapes.material(colour)
         )
 
 
-def _material(colour: str, **look: Any) -> Any:
-    from meshcat.geometry import MeshLambertMaterial
-
-    return MeshLambertMaterial(color=colours.as_integer(colour), **look)
-
-
-def _unit_shape(dimension: int) -> Any:
-    """Return the unit ball, or the cylinder of radius and height 1, smooth to the eye."""
-    from meshcat.geometry import Cylinder, Sphere
-
-    if dimension == 3:
-        return _finer(Sphere(1.0), widthSegments=64, heightSegments=32)
-    return _finer(Cylinder(1.0, 1.0), radialSegments=96)
-
-
-def _finer(geometry: Any, **segments: int) -> Any:
-    coarse = geometry.lower
-    geometry.lower = lambda object_data: {**coarse(object_data), **segments}
-    return geometry
-
-
-def _named(bodies: Iterable[Ellipsoid], kind: str) -> list[tuple[Ellipsoid, str]]:
+def _named(bodies: Iterable[Ellipsoid]) -> list[tuple[Ellipsoid, str]]:
     """Return each body with a name that is unique in its folder and holds no slash."""
-    seen: dict[str, int] = {}
+    taken: set[str] = set()
     named = []
-    for index, body in enumerate(bodies, start=1):
-        name = (body.name or f"{kind} {index}").replace("/", "-")
-        seen[name] = seen.get(name, 0) + 1
-        named.append((body, name if seen[name] == 1 else f"{name} ({seen[name]})"))
+    for body in bodies:
+        plain = (body.name or "body").replace("/", "-")
+        name, count = plain, 1
+        while name in taken:
+            count += 1
+            name = f"{plain} ({count})"
+        taken.add(name)
+        named.append((body, name))
     return named
 
 
-def _extent(scenario: Scenario) -> NDArray[np.float64]:
+def _still_points(scenario: Scenario) -> NDArray[np.float64]:
     """Return points (m, n) whose hull holds, nearly, everything that stands still."""
     world, robot = scenario.world, scenario.robot
     still = [*robot.bodies_at(scenario.start), *robot.bodies_at(scenario.goal)]
@@ -305,14 +218,13 @@ def _box_edges(low: NDArray[np.float64], high: NDArray[np.float64]) -> list[NDAr
 
 
 def _simplified(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Drop the points (m, n) that lie on the straight line between their neighbours."""
+    """Drop the points of (m, n) that lie on the straight line between their neighbours."""
     keep = [0]
     for index in range(1, len(positions) - 1):
-        before, after = (
-            positions[index] - positions[keep[-1]],
-            positions[index + 1] - positions[index],
-        )
-        product = np.linalg.norm(before) * np.linalg.norm(after)
-        if before @ after < (1.0 - 1e-12) * product:
+        before = positions[index] - positions[keep[-1]]
+        after = positions[index + 1] - positions[index]
+        if before @ after < (1.0 - 1e-12) * np.linalg.norm(before) * np.linalg.norm(after):
             keep.append(index)
-    return positions[[*keep, len(positions) - 1]]
+    if len(positions) > 1:
+        keep.append(len(positions) - 1)
+    return positions[keep]

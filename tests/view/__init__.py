@@ -1,0 +1,1 @@
+"""Pages and pictures, tested by what can be seen on them."""

@@ -1,0 +1,1 @@
+"""Hostile tests of the kernels through their public wrappers."""

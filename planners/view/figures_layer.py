@@ -39,9 +39,18 @@ def draw_layer(axes: Axes, view: LayerSlice, marked: str, lines: int = LINES) ->
     (left, bottom), (right, top) = view.bounds
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
+    _add_legend(axes)
+
+
+def _add_legend(axes: Axes) -> None:
+    """Put the legend below the axis label, at a distance that does not scale with the axes."""
+    from matplotlib.transforms import ScaledTranslation
+
+    below = ScaledTranslation(0.0, -0.42, axes.figure.dpi_scale_trans)
     axes.legend(
         loc="upper right",
-        bbox_to_anchor=(1.02, -0.1),
+        bbox_to_anchor=(1.02, 0.0),
+        bbox_transform=axes.transAxes + below,
         ncols=4,
         fontsize=8,
         frameon=False,
@@ -112,6 +121,6 @@ def _title(view: LayerSlice) -> str:
     if not view.cspace.rotates:
         return f"The layer{place}"
     if view.cspace.dimension == 2:
-        heading = f"{math.degrees(view.configuration[2]):.0f}°".replace("-", "−")
+        heading = f"{math.degrees(view.configuration[2]):.0f}°".replace("-", "\N{MINUS SIGN}")
         return f"The layer of heading {heading}"
     return f"The layer of one orientation{place}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from ellipsoid_planning.geometry import Ellipsoid
 from planners.view import colours
+from planners.view.embedding import outline
 from planners.view.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
         _draw_swept(axes, scenario, trajectory)
     _draw_bodies(axes, robot.bodies_at(scenario.start), colours.START, 5)
     _draw_bodies(axes, robot.bodies_at(scenario.goal), colours.GOAL, 5)
-    _label(axes, scenario.start, "start")
-    _label(axes, scenario.goal, "goal")
+    _label(axes, robot.bodies_at(scenario.start), "start")
+    _label(axes, robot.bodies_at(scenario.goal), "goal")
     finish(axes)
 
 
@@ -85,13 +86,17 @@ def _draw_bodies(
         )
 
 
-def _label(axes: Axes, configuration: np.ndarray, text: str) -> None:
+def _label(axes: Axes, bodies: Iterable[Ellipsoid], text: str) -> None:
+    outlines = np.concatenate([outline(body) for body in bodies])
+    left, bottom = outlines.min(axis=0)
+    below = (0.5 * (left + float(outlines[:, 0].max())), bottom)
     axes.annotate(
         text,
-        (configuration[0], configuration[1]),
-        xytext=(0, -26),
+        below,
+        xytext=(0, -3),
         textcoords="offset points",
         ha="center",
+        va="top",
         fontsize=9,
         zorder=7,
     )

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
 
 SWEPT_POSES = 12
-LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the viewer
-AMBIENT = 0.5
-ARENA_AMBIENT = 0.85
+LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
+AMBIENT = 0.35
+ARENA_AMBIENT = 0.8
 
 
 class Painting:
@@ -46,7 +46,8 @@ class Painting:
         if inside:
             normals = -normals
         facing = normals[:, 2] > 0.0
-        light = ambient + (1.0 - ambient) * np.clip(normals[facing] @ LIGHT, 0.0, 1.0)
+        # Light that reaches around the body ("half Lambert") keeps the dark side readable.
+        light = ambient + (1.0 - ambient) * (0.5 + 0.5 * (normals[facing] @ LIGHT)) ** 1.5
         self._patches.append(seen[facing])
         self._colours.append(light[:, None] * np.array(colours.rgb(colour)))
 
@@ -90,7 +91,7 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     painting = Painting(workspace_camera(scenario))
     axes.set_title("Workspace", loc="left", fontsize=11)
     if world.arenas:
-        _add_bodies(painting, world.arenas, colours.tint(colours.ARENA, 0.6), inside=True)
+        _add_bodies(painting, world.arenas, colours.tint(colours.ARENA, 0.65), inside=True)
         painting.paint(axes, 1, 1.0 if len(world.arenas) == 1 else 0.5)
     else:
         _draw_floor(axes, painting.camera, scenario)
@@ -109,7 +110,7 @@ def _add_bodies(
     painting: Painting, bodies: Iterable[Ellipsoid], colour: str, inside: bool = False
 ) -> None:
     for body in bodies:
-        painting.add(ellipsoid_patches(body, 64, 32), colour, inside)
+        painting.add(ellipsoid_patches(body, 96, 48), colour, inside)
 
 
 def _add_swept(painting: Painting, scenario: Scenario, trajectory: Trajectory) -> None:

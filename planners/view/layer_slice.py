@@ -7,6 +7,7 @@ are in the plane's coordinates (across, up): up is the last axis, along which li
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ from ellipsoid_planning.geometry.minkowski import minkowski_sum_boundary
 from planners.view.convex import Support, intersect_half_planes, section_support
 
 if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.layer import Layer
     from ellipsoid_planning.cspace.space import CSpace
 
 DIRECTIONS = 240
@@ -36,6 +38,11 @@ class LayerSlice:
     cspace: CSpace
     configuration: NDArray[np.float64]
     across: int = 0
+
+    @cached_property
+    def layer(self) -> Layer:
+        """The layer."""
+        return self.cspace.layer(self.configuration)
 
     @property
     def bounds(self) -> NDArray[np.float64]:
@@ -63,16 +70,14 @@ class LayerSlice:
 
     def c_obstacles(self) -> list[NDArray[np.float64]]:
         """Return the C-obstacle of each part and obstacle that meets the plane, (m, 2) each."""
-        pairs = [(part, body) for body in self.cspace.world.obstacles for part in self._parts()]
-        polygons = [self._c_obstacle(part, body) for part, body in pairs]
+        polygons = [self._c_obstacle(*pair) for pair in self.layer.obstacle_pairs()]
         return [polygon for polygon in polygons if len(polygon) > 2]
 
     def allowed(self) -> NDArray[np.float64]:
         """Return the base positions (m, 2) within the bounds that keep the robot in the arena."""
         polygon = _rectangle(*self.bounds)
-        for arena in self.cspace.world.arenas:
-            for part in self._parts():
-                polygon = self._cut(polygon, self._difference(part, arena))
+        for arena, part in self.layer.arena_pairs():
+            polygon = self._cut(polygon, self._difference(arena, part))
         return polygon
 
     def sweep_lines(self, count: int) -> NDArray[np.float64]:
@@ -82,12 +87,11 @@ class LayerSlice:
 
     def free_intervals(self, lines: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """Return the free intervals on each sweep line, (k, 2) each."""
-        layer = self.cspace.layer(self.configuration)
         n = self.cspace.dimension
         found = []
         for line in lines:
             position = self.configuration_at(np.array([line, 0.0]))[:n]
-            found.append(np.asarray(layer.free_intervals(position), dtype=float).reshape(-1, 2))
+            found.append(self.layer.free_intervals(position))
         return found
 
     def roadmap(
@@ -118,31 +122,23 @@ class LayerSlice:
             self.cspace.is_motion_valid(self.configuration_at(first), self.configuration_at(second))
         )
 
-    def _parts(self) -> list[Ellipsoid]:
-        """Return the robot's parts, turned, around the base at the origin."""
-        robot = self.cspace.robot
-        _, rotation = robot.pose(self.configuration)
-        return [part.transform(rotation, np.zeros(robot.dimension)) for part in robot.parts]
-
-    def _c_obstacle(self, part: Ellipsoid, obstacle: Ellipsoid) -> NDArray[np.float64]:
-        # The mirror image of an ellipsoid is the ellipsoid around the mirrored centre.
-        mirrored = Ellipsoid(-part.centre, part.rotation, part.semi_axes)
+    def _c_obstacle(self, obstacle: Ellipsoid, part: Ellipsoid) -> NDArray[np.float64]:
         gap = self.cspace.clearance_required
         if self.cspace.dimension == 2:
             normals = unit_directions(2, DIRECTIONS)
-            boundary = minkowski_sum_boundary(obstacle, mirrored, normals)
+            boundary = minkowski_sum_boundary(obstacle, part, normals)
             return np.asarray(boundary + gap * normals)
 
         def support(u: NDArray[np.float64]) -> NDArray[np.float64]:
             return np.asarray(
-                obstacle.support(u) + mirrored.support(u) + gap * np.linalg.norm(u, axis=-1)
+                obstacle.support(u) + part.support(u) + gap * np.linalg.norm(u, axis=-1)
             )
 
         reach = np.linalg.norm(obstacle.semi_axes) + np.linalg.norm(part.semi_axes) + gap
-        middle = (obstacle.centre + mirrored.centre)[self._shown]
+        middle = obstacle.centre[self._shown]
         return self._cut(_rectangle(middle - 2.0 * reach, middle + 2.0 * reach), support)
 
-    def _difference(self, part: Ellipsoid, arena: Ellipsoid) -> Support:
+    def _difference(self, arena: Ellipsoid, part: Ellipsoid) -> Support:
         # x + part lies in the arena iff u.x + h_part(u) <= h_arena(u) for every u.
         gap = self.cspace.clearance_required
         return lambda u: arena.support(u) - part.support(u) - gap * np.linalg.norm(u, axis=-1)

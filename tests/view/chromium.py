@@ -3,7 +3,6 @@
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

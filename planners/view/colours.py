@@ -6,7 +6,7 @@ with any of the common colour-vision deficiencies.
 
 from __future__ import annotations
 
-OBSTACLE = "#8c8c8c"
+OBSTACLE = "#686868"
 ARENA = "#56b4e9"
 START = "#009e73"
 GOAL = "#d55e00"

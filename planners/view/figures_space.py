@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SWEPT_POSES = 12
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
-AMBIENT = 0.35
+AMBIENT = 0.5
 ARENA_AMBIENT = 0.8
 
 
@@ -95,7 +95,7 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
         painting.paint(axes, 1, 1.0 if len(world.arenas) == 1 else 0.5)
     else:
         _draw_floor(axes, painting.camera, scenario)
-    _add_bodies(painting, world.obstacles, colours.tint(colours.OBSTACLE, 0.3))
+    _add_bodies(painting, world.obstacles, colours.OBSTACLE)
     if trajectory is not None:
         _add_swept(painting, scenario, trajectory)
     _add_bodies(painting, robot.bodies_at(scenario.start), colours.START)

@@ -4,6 +4,7 @@ import dataclasses
 import re
 import subprocess
 import sys
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -93,7 +94,7 @@ def test_the_robot_moves_on_its_path(make, tmp_path):
     n = result.scenario.dimension
     corners = result.path.configurations[:, :n]
     shares = np.linspace(0.1, 0.9, 33)[:, None]
-    points = np.concatenate([a + shares * (b - a) for a, b in zip(corners, corners[1:])])
+    points = np.concatenate([a + shares * (b - a) for a, b in pairwise(corners)])
     places = scene.camera.pixels(scene.embedding.points(points, LINES), WIDTH, HEIGHT)
     dark = at(picture, places).max(axis=1) < 0.35
     assert np.mean(dark) > 0.6  # the robot hides a part in 3-D

@@ -33,7 +33,7 @@ class Layer:
         self._placed = np.empty((parts, layout.PLACED))
         placement.place(scene, 0.0, 0.0, 0.0, *quaternion, self._placed)
         self._table = np.empty((max(parts * bodies, 1), whitening.WHITEN))
-        self._known = np.zeros(max(parts * bodies, 1), dtype=np.bool_)
+        self._keys = np.full(max(parts * bodies, 1), -1, dtype=np.int64)
         self._scratch = np.empty((1, 9))
 
     def free_intervals(self, position: ArrayLike, axis: int = -1) -> Array:
@@ -55,8 +55,9 @@ class Layer:
             )
         point[:n] = values
         out = np.empty((lines.CAPACITY, 2))
+        cache = (self._table, self._keys, self._scratch)
         count = lines.free_intervals(
-            self._scene, self._placed, self._table, self._known, self._scratch, axis % n, *point, out
+            self._scene, self._placed, 0, *cache, axis % n, *point, out
         )
         return out[:count]
 

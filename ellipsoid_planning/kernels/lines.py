@@ -2,7 +2,8 @@
 
 A layer is one value of everything but translation: its parts are placed once, with the base at
 the origin. The whitening of a pair (part, body) is computed when a line first needs it and kept in
-``table`` (row i · bodies + j, obstacles first, then arenas), flagged in ``known``.
+``table``, a cache of rows addressed by key modulo their number: key = ``base`` + i · bodies + j,
+obstacles first, then arenas. ``keys`` tells whose row it is at present, −1 for none.
 """
 
 from .broad_phase import next_overlap
@@ -70,16 +71,24 @@ def subtract(intervals, count, low, high, shortest):
 
 
 @kernel
-def _arena_interval(arenas, scene, placed, table, known, scratch, columns, axis, x, y, z):
+def _whitened_row(bodies, j, placed, i, key, table, keys, scratch):
+    """The row of ``table`` that holds the whitening of a pair, computed if it is not there."""
+    row = key % keys.shape[0]
+    if keys[row] != key:
+        whiten(bodies, j, placed, i, scratch, table, row)
+        keys[row] = key
+    return row
+
+
+@kernel
+def _arena_interval(arenas, scene, placed, base, table, keys, scratch, columns, axis, x, y, z):
     """Where all parts are inside all arenas, within the bounds: (low, high), empty if low > high."""
     low, high = scene[LOW + axis], scene[HIGH + axis]
     first = columns - arenas.shape[0]
     for i in range(placed.shape[0]):
         for j in range(arenas.shape[0]):
-            row = i * columns + first + j
-            if not known[row]:
-                whiten(arenas, j, placed, i, scratch, table, row)
-                known[row] = True
+            key = base + i * columns + first + j
+            row = _whitened_row(arenas, j, placed, i, key, table, keys, scratch)
             size = inverse_size(arenas, j, BODY_WHITEN)
             slack = TOLERANCE * (1.0 + size * scene[SCALE])
             inside, a, b = arena_chord(arenas, j, placed, i, table, row, slack, axis, x, y, z)
@@ -92,7 +101,7 @@ def _arena_interval(arenas, scene, placed, table, known, scratch, columns, axis,
 
 
 @kernel
-def free_intervals(scene, placed, table, known, scratch, axis, x, y, z, intervals):
+def free_intervals(scene, placed, base, table, keys, scratch, axis, x, y, z, intervals):
     """Free intervals of the line through (x, y, z) along ``axis``: their count.
 
     ``intervals`` (capacity, 2) receives them sorted, as values of the swept coordinate. Every
@@ -109,7 +118,7 @@ def free_intervals(scene, placed, table, known, scratch, axis, x, y, z, interval
             return 0
     columns = obstacles.shape[0] + arenas.shape[0]
     low, high = _arena_interval(
-        arenas, scene, placed, table, known, scratch, columns, axis, x, y, z
+        arenas, scene, placed, base, table, keys, scratch, columns, axis, x, y, z
     )
     tolerance, clearance = TOLERANCE * scene[SCALE], scene[CLEARANCE]
     if high - low <= tolerance:
@@ -133,10 +142,8 @@ def free_intervals(scene, placed, table, known, scratch, axis, x, y, z, interval
         node = next_overlap(tree, 0, x0, y0, z0, x1, y1, z1)
         while node >= 0:
             j = int(tree[node, NODE_OBSTACLE])
-            row = i * columns + j
-            if not known[row]:
-                whiten(obstacles, j, placed, i, scratch, table, row)
-                known[row] = True
+            key = base + i * columns + j
+            row = _whitened_row(obstacles, j, placed, i, key, table, keys, scratch)
             hit, a, b = obstacle_chord(
                 obstacles, j, placed, i, table, row, clearance, tolerance, axis, x, y, z
             )

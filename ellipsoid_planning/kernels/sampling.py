@@ -85,7 +85,9 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
     parts = int(scene[PART_COUNT])
     pairs = max(1, parts * int(scene[OBSTACLE_COUNT] + scene[ARENA_COUNT]))
     placed = new_placed(scene)
-    table, known = np.empty((pairs, WHITEN)), np.empty(pairs, np.bool_)
+    # A few rows do: the whitening of a pair is needed again only by chance.
+    rows = min(pairs, 64)
+    table, keys = np.empty((rows, WHITEN)), np.empty(rows, np.int64)
     scratch, intervals = np.empty((1, 9)), np.empty((CAPACITY, 2))
     point = np.zeros(3)
     for attempt in range(numbers.shape[0]):
@@ -119,10 +121,10 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
             if distance >= 0.0:
                 low, high = max(low, near[k] - width), min(high, near[k] + width)
             point[k] = low + row[3 + k] * (high - low)
-        known[:] = False
+        keys[:] = -1
         place(scene, 0.0, 0.0, 0.0, q[0], q[1], q[2], q[3], placed)
         count = free_intervals(
-            scene, placed, table, known, scratch, axis, point[0], point[1], point[2], intervals
+            scene, placed, 0, table, keys, scratch, axis, point[0], point[1], point[2], intervals
         )
         low, high = scene[LOW + axis], scene[HIGH + axis]
         if distance >= 0.0:

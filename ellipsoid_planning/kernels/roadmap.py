@@ -1,0 +1,467 @@
+"""The highway roadmap and its lazy search (design 3.5), all in one loop.
+
+*Layers* are orientations, *columns* base positions without the swept coordinate. A line is a
+layer and a column; its free intervals are the *nodes*. Lines, nodes and proved or refuted edges
+are computed when the search first asks and remembered for later queries.
+
+The search is A* with an inflated heuristic. Its open list holds *promises* (a line not yet looked
+at) and *edges* (two nodes, not yet proved); both are settled when popped, so that only the most
+promising lines are computed and edges proved. Every node that is reached also tries the direct
+motion to the goal.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .compile import kernel
+from .containers import EMPTY, lookup, pop, push, store
+from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT
+from .lines import CAPACITY, free_intervals
+from .motion import prove_motion
+from .placement import place
+
+# Status of a burst
+SEARCHING = 0
+SOLVED = 1
+EXHAUSTED = 2
+GROW = 3
+
+# Counters
+NODES = 0
+EDGES = 1
+ENTRIES = 2
+OPEN = 3
+LINES = 4
+PROVED = 5
+REFUTED = 6
+EXPANSIONS = 7
+LAYERS_PLACED = 8
+QUERY = 9
+GOAL_REACHED = 10
+COUNTERS = 11
+
+# Node columns of the integer table
+NODE_LAYER = 0
+NODE_COLUMN = 1
+NODE_PARENT = 2
+NODE_STAMP = 3
+NODE_INTEGERS = 4
+
+# Node columns of the real table: the interval, then what the present query knows
+NODE_LOW = 0
+NODE_HIGH = 1
+NODE_COST = 2
+NODE_ENTRY = 3
+NODE_LEAVE = 4
+NODE_REALS = 5
+
+# A line's key is layer · COLUMN_STRIDE + column; columns and layers may be added at any time.
+COLUMN_STRIDE = 1 << 20
+# A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
+LINE_BASE = 128
+_NODE_BITS = 31
+
+
+class Roadmap(NamedTuple):
+    """The arrays of one roadmap; all but the first six grow (kernels.roadmap tells how).
+
+    Attributes:
+        orientations: quaternions of the layers (L, 4).
+        layer_neighbours: rows (L, K) of layers, filled up with −1.
+        columns: base positions (C, 3), swept coordinate 0.
+        column_neighbours: rows (C, D) of columns, filled up with −1.
+        placed: parts of each layer (L, k, PLACED), base at the origin.
+        ready: which layers are placed (L,).
+        whitening, whitening_keys, scratch: cache of lines.
+        lines, edges: maps (2, size) to nodes and edges.
+        node_integers, node_reals: tables of the nodes.
+        edge_reals: (E, 3): proved (1) or refuted (0), swept coordinate at either node.
+        heap, heap_items: the open list's order.
+        entry_reals: (N, 2): cost so far, swept coordinate at the parent.
+        entry_integers: (N, 3): target node or −1, parent node, line of a promise.
+        counters: (COUNTERS,).
+        motion, motion_placed, motion_stack: workspaces of kernels.motion.
+    """
+
+    orientations: NDArray[np.float64]
+    layer_neighbours: NDArray[np.int32]
+    columns: NDArray[np.float64]
+    column_neighbours: NDArray[np.int32]
+    placed: NDArray[np.float64]
+    ready: NDArray[np.bool_]
+    whitening: NDArray[np.float64]
+    whitening_keys: NDArray[np.int64]
+    scratch: NDArray[np.float64]
+    lines: NDArray[np.int64]
+    edges: NDArray[np.int64]
+    node_integers: NDArray[np.int64]
+    node_reals: NDArray[np.float64]
+    edge_reals: NDArray[np.float64]
+    heap: NDArray[np.float64]
+    heap_items: NDArray[np.int64]
+    entry_reals: NDArray[np.float64]
+    entry_integers: NDArray[np.int64]
+    counters: NDArray[np.int64]
+    motion: NDArray[np.float64]
+    motion_placed: NDArray[np.float64]
+    motion_stack: NDArray[np.float64]
+
+
+@kernel
+def _angle(rm, a, b):
+    """Angle between the orientations of two layers [rad]."""
+    p, q = rm.orientations[a], rm.orientations[b]
+    dot = abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
+    return 2.0 * math.acos(min(dot, 1.0))
+
+
+@kernel
+def _heuristic(rm, layer, column, swept, axis, goals, weight):
+    """Smallest distance to a goal row (layer, x, y, z)."""
+    best = math.inf
+    for k in range(goals.shape[0]):
+        total = 0.0
+        for m in range(3):
+            value = swept if m == axis else rm.columns[column, m]
+            total += (value - goals[k, 1 + m]) ** 2
+        distance = math.sqrt(total) + weight * _angle(rm, layer, int(goals[k, 0]))
+        best = min(best, distance)
+    return best
+
+
+@kernel
+def _step(rm, a, za, b, zb, axis, weight):
+    """Length of the edge from node ``a`` at ``za`` to node ``b`` at ``zb``."""
+    ca, cb = rm.node_integers[a, NODE_COLUMN], rm.node_integers[b, NODE_COLUMN]
+    total = (za - zb) ** 2
+    for m in range(3):
+        if m != axis:
+            total += (rm.columns[ca, m] - rm.columns[cb, m]) ** 2
+    la, lb = rm.node_integers[a, NODE_LAYER], rm.node_integers[b, NODE_LAYER]
+    return math.sqrt(total) + (weight * _angle(rm, la, lb) if la != lb else 0.0)
+
+
+@kernel
+def _pose(rm, node, swept, axis, out):
+    layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+    for m in range(3):
+        out[m] = swept if m == axis else rm.columns[column, m]
+    for m in range(4):
+        out[3 + m] = rm.orientations[layer, m]
+
+
+@kernel
+def line_nodes(scene, rm, layer, column, axis, intervals):
+    """Nodes of a line, computed once: (first, count)."""
+    key = layer * COLUMN_STRIDE + column
+    value = lookup(rm.lines, key)
+    if value != EMPTY:
+        return value // LINE_BASE, value % LINE_BASE
+    q = rm.orientations[layer]
+    if not rm.ready[layer]:
+        place(scene, 0.0, 0.0, 0.0, q[0], q[1], q[2], q[3], rm.placed[layer])
+        rm.ready[layer] = True
+        rm.counters[LAYERS_PLACED] += 1
+    bodies = int(scene[OBSTACLE_COUNT] + scene[ARENA_COUNT])
+    base = layer * rm.placed.shape[1] * bodies
+    point = rm.columns[column]
+    count = free_intervals(
+        scene,
+        rm.placed[layer],
+        base,
+        rm.whitening,
+        rm.whitening_keys,
+        rm.scratch,
+        axis,
+        point[0],
+        point[1],
+        point[2],
+        intervals,
+    )
+    first = rm.counters[NODES]
+    for k in range(count):
+        node = first + k
+        rm.node_integers[node, NODE_LAYER] = layer
+        rm.node_integers[node, NODE_COLUMN] = column
+        rm.node_integers[node, NODE_STAMP] = 0
+        rm.node_reals[node, NODE_LOW] = intervals[k, 0]
+        rm.node_reals[node, NODE_HIGH] = intervals[k, 1]
+    rm.counters[NODES] += count
+    rm.counters[LINES] += 1
+    store(rm.lines, key, first * LINE_BASE + count)
+    return first, count
+
+
+@kernel
+def node_at(scene, rm, layer, column, swept, axis, intervals):
+    """The line's node whose interval is nearest to ``swept``, or −1 if the line is blocked."""
+    first, count = line_nodes(scene, rm, layer, column, axis, intervals)
+    best, nearest = math.inf, -1
+    for node in range(first, first + count):
+        below = rm.node_reals[node, NODE_LOW] - swept
+        above = swept - rm.node_reals[node, NODE_HIGH]
+        away = max(0.0, max(below, above))
+        if away < best:
+            best, nearest = away, node
+    return nearest
+
+
+@kernel
+def _crossing(rm, a, b, entry, choice):
+    """Candidate ``choice`` of where an edge leaves ``a`` and enters ``b``: (z_a, z_b, exists)."""
+    low_a, high_a = rm.node_reals[a, NODE_LOW], rm.node_reals[a, NODE_HIGH]
+    low_b, high_b = rm.node_reals[b, NODE_LOW], rm.node_reals[b, NODE_HIGH]
+    low, high = max(low_a, low_b), min(high_a, high_b)
+    if choice == 3:
+        return 0.5 * (low_a + high_a), 0.5 * (low_b + high_b), True
+    if low > high:
+        return 0.0, 0.0, False
+    width = high - low
+    if choice == 0:
+        swept = min(max(entry, low + 0.25 * width), high - 0.25 * width)
+    elif choice == 1:
+        swept = 0.5 * (low + high)
+    else:
+        swept = low + (0.1 if entry < 0.5 * (low + high) else 0.9) * width
+    return swept, swept, True
+
+
+@kernel
+def _prove_edge(scene, rm, a, b, entry, axis, ends):
+    """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
+    key = (min(a, b) << _NODE_BITS) | max(a, b)
+    known = lookup(rm.edges, key)
+    if known != EMPTY:
+        row = rm.edge_reals[known]
+        if a < b:
+            return row[1], row[2], row[0] > 0.0
+        return row[2], row[1], row[0] > 0.0
+    za, zb, proved = 0.0, 0.0, False
+    for choice in range(4):
+        za, zb, exists = _crossing(rm, a, b, entry, choice)
+        if not exists:
+            continue
+        _pose(rm, a, za, axis, ends[0])
+        _pose(rm, b, zb, axis, ends[1])
+        proved = (
+            prove_motion(
+                scene,
+                ends[0],
+                ends[1],
+                scene[CLEARANCE],
+                rm.motion,
+                rm.motion_placed,
+                rm.motion_stack,
+            )
+            > 0
+        )
+        if proved:
+            break
+    edge = rm.counters[EDGES]
+    rm.counters[EDGES] += 1
+    rm.counters[PROVED if proved else REFUTED] += 1
+    rm.edge_reals[edge, 0] = 1.0 if proved else 0.0
+    rm.edge_reals[edge, 1], rm.edge_reals[edge, 2] = (za, zb) if a < b else (zb, za)
+    store(rm.edges, key, edge)
+    return za, zb, proved
+
+
+@kernel
+def _open(rm, priority, cost, leave, target, parent, line):
+    entry = rm.counters[ENTRIES]
+    rm.counters[ENTRIES] += 1
+    rm.entry_reals[entry, 0], rm.entry_reals[entry, 1] = cost, leave
+    rm.entry_integers[entry, 0] = target
+    rm.entry_integers[entry, 1] = parent
+    rm.entry_integers[entry, 2] = line
+    rm.counters[OPEN] = push(rm.heap, rm.heap_items, rm.counters[OPEN], priority, entry)
+
+
+@kernel
+def _promise(rm, node, layer, column, axis, goals, inflation, weight):
+    """Open a line next to ``node`` that has not been looked at in this query."""
+    entry = rm.node_reals[node, NODE_ENTRY]
+    own_layer, own_column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+    step = 0.0
+    for m in range(3):
+        if m != axis:
+            step += (rm.columns[own_column, m] - rm.columns[column, m]) ** 2
+    step = math.sqrt(step)
+    if layer != own_layer:
+        step += weight * _angle(rm, own_layer, layer)
+    cost = rm.node_reals[node, NODE_COST] + step
+    ahead = _heuristic(rm, layer, column, entry, axis, goals, weight)
+    line = layer * COLUMN_STRIDE + column
+    _open(rm, cost + inflation * ahead, cost, entry, -1, node, line)
+
+
+@kernel
+def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals):
+    """Look at a promised line: open the edges from ``parent`` to its nodes."""
+    layer, column = line // COLUMN_STRIDE, line % COLUMN_STRIDE
+    first, count = line_nodes(scene, rm, layer, column, axis, intervals)
+    entry = rm.node_reals[parent, NODE_ENTRY]
+    for node in range(first, first + count):
+        if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
+            continue
+        za, zb, exists = _crossing(rm, parent, node, entry, 0)
+        if not exists:
+            if layer != rm.node_integers[parent, NODE_LAYER]:
+                continue
+            za, zb, exists = _crossing(rm, parent, node, entry, 3)
+        cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
+        cost += _step(rm, parent, za, node, zb, axis, weight)
+        ahead = _heuristic(rm, layer, column, zb, axis, goals, weight)
+        _open(rm, cost + inflation * ahead, cost, za, node, parent, line)
+
+
+@kernel
+def _reach(rm, node, parent, leave, entry, cost):
+    rm.node_integers[node, NODE_STAMP] = rm.counters[QUERY]
+    rm.node_integers[node, NODE_PARENT] = parent
+    rm.node_reals[node, NODE_COST] = cost
+    rm.node_reals[node, NODE_ENTRY] = entry
+    rm.node_reals[node, NODE_LEAVE] = leave
+
+
+@kernel
+def _expand(rm, node, axis, goals, inflation, weight):
+    """Promise every line next to ``node``."""
+    layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+    for k in range(rm.column_neighbours.shape[1]):
+        other = rm.column_neighbours[column, k]
+        if other >= 0:
+            _promise(rm, node, layer, other, axis, goals, inflation, weight)
+    for k in range(rm.layer_neighbours.shape[1]):
+        other = rm.layer_neighbours[layer, k]
+        if other >= 0:
+            _promise(rm, node, other, column, axis, goals, inflation, weight)
+    rm.counters[EXPANSIONS] += 1
+
+
+@kernel
+def _meets_goal(scene, rm, node, axis, goals, ends):
+    """The goal to which the direct motion from ``node`` is proved free, or −1."""
+    entry = rm.node_reals[node, NODE_ENTRY]
+    _pose(rm, node, entry, axis, ends[0])
+    for k in range(goals.shape[0]):
+        for m in range(3):
+            ends[1, m] = goals[k, 1 + m]
+        for m in range(4):
+            ends[1, 3 + m] = rm.orientations[int(goals[k, 0]), m]
+        proofs = prove_motion(
+            scene,
+            ends[0],
+            ends[1],
+            scene[CLEARANCE],
+            rm.motion,
+            rm.motion_placed,
+            rm.motion_stack,
+        )
+        rm.counters[PROVED if proofs > 0 else REFUTED] += 1
+        if proofs > 0:
+            return k
+    return -1
+
+
+@kernel
+def begin(scene, rm, starts, goals, axis, inflation, weight):
+    """Start a query: rows of ``starts`` and ``goals`` are (layer, x, y, z, column).
+
+    Returns SEARCHING, or EXHAUSTED if no start has a free interval.
+    """
+    intervals = np.empty((CAPACITY, 2))
+    rm.counters[QUERY] += 1
+    rm.counters[ENTRIES] = 0
+    rm.counters[OPEN] = 0
+    rm.counters[GOAL_REACHED] = -1
+    for k in range(starts.shape[0]):
+        swept = starts[k, 1 + axis]
+        layer, column = int(starts[k, 0]), int(starts[k, 4])
+        node = node_at(scene, rm, layer, column, swept, axis, intervals)
+        if node >= 0:
+            ahead = _heuristic(rm, layer, column, swept, axis, goals, weight)
+            _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
+    return SEARCHING if rm.counters[OPEN] > 0 else EXHAUSTED
+
+
+@kernel
+def _has_room(rm):
+    """Whether every table has room for one more step of the search."""
+    counters = rm.counters
+    branches = rm.column_neighbours.shape[1] + rm.layer_neighbours.shape[1]
+    return (
+        counters[NODES] + 2 * CAPACITY < rm.node_reals.shape[0]
+        and counters[EDGES] + 2 < rm.edge_reals.shape[0]
+        and 2 * (counters[EDGES] + 2) < rm.edges.shape[1]
+        and 2 * (counters[LINES] + 2) < rm.lines.shape[1]
+        and counters[ENTRIES] + branches + 2 * CAPACITY < rm.entry_reals.shape[0]
+    )
+
+
+@kernel
+def search(scene, rm, goals, axis, inflation, weight, steps):
+    """Up to ``steps`` steps of the search: SEARCHING, SOLVED, EXHAUSTED or GROW.
+
+    When SOLVED, counters[GOAL_REACHED] packs the last node and the goal:
+    node · (number of goals) + goal.
+    """
+    intervals = np.empty((CAPACITY, 2))
+    ends = np.empty((2, 7))
+    for _ in range(steps):
+        if not _has_room(rm):
+            return GROW
+        if rm.counters[OPEN] == 0:
+            return EXHAUSTED
+        item = pop(rm.heap, rm.heap_items, rm.counters[OPEN])
+        rm.counters[OPEN] -= 1
+        node, parent = rm.entry_integers[item, 0], rm.entry_integers[item, 1]
+        if node < 0:
+            line = rm.entry_integers[item, 2]
+            _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals)
+            continue
+        if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
+            continue
+        cost, leave = rm.entry_reals[item, 0], rm.entry_reals[item, 1]
+        if parent < 0:
+            _reach(rm, node, -1, leave, leave, 0.0)
+        else:
+            entry = rm.node_reals[parent, NODE_ENTRY]
+            za, zb, proved = _prove_edge(scene, rm, parent, node, entry, axis, ends)
+            if not proved:
+                continue
+            cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
+            cost += _step(rm, parent, za, node, zb, axis, weight)
+            _reach(rm, node, parent, za, zb, cost)
+        goal = _meets_goal(scene, rm, node, axis, goals, ends)
+        if goal >= 0:
+            rm.counters[GOAL_REACHED] = node * goals.shape[0] + goal
+            return SOLVED
+        _expand(rm, node, axis, goals, inflation, weight)
+    return SEARCHING
+
+
+@kernel
+def trace(rm, last, axis, out):
+    """Poses (7,) from the start to node ``last``, written backwards to ``out``: their number.
+
+    Twice the number of nodes suffices; returns 0 if ``out`` is too small.
+    """
+    count, node = 0, last
+    swept = rm.node_reals[node, NODE_ENTRY]
+    while True:
+        if count + 2 > out.shape[0]:
+            return 0
+        _pose(rm, node, swept, axis, out[count])
+        count += 1
+        if swept != rm.node_reals[node, NODE_ENTRY]:
+            _pose(rm, node, rm.node_reals[node, NODE_ENTRY], axis, out[count])
+            count += 1
+        parent = rm.node_integers[node, NODE_PARENT]
+        if parent < 0:
+            return count
+        swept = rm.node_reals[node, NODE_LEAVE]
+        node = parent

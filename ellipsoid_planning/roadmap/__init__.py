@@ -1,0 +1,1 @@
+"""The highway roadmap: layers of sweep lines, searched lazily; works without OMPL."""

@@ -1,0 +1,209 @@
+"""The highway roadmap planner, without OMPL (thesis 6.3, design 3.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels.motion import motions_are_free
+from ellipsoid_planning.kernels.shortcut import shortcut
+from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.roadmap.grid import Grid, grid_columns
+from ellipsoid_planning.roadmap.level import Level
+from ellipsoid_planning.roadmap.orientations import between, random_turn, spread_orientations
+from ellipsoid_planning.roadmap.parameters import RoadmapParameters
+from ellipsoid_planning.roadmap.shorten import shorten
+
+Array = NDArray[np.float64]
+
+SOLVED = "solved"
+EXHAUSTED = "exhausted"
+TIMEOUT = "timeout"
+
+# A finer level has this many times the lines along a side, and this many times the layers.
+_MORE_LINES = 1.6
+_MORE_LAYERS = 2.5
+# Orientations put between those of start and goal.
+_BETWEEN = 3
+_LOWER_INFLATIONS = (2.0, 1.5, 1.2, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """How a query ended: ``status``, and the path (m, d) if solved."""
+
+    status: str
+    path: Array | None = None
+
+
+class HighwayRoadmap:
+    """A roadmap of free intervals, built where queries look and kept for later ones.
+
+    The direct motion comes first. Then levels of growing resolution are searched until one has a
+    path, which is proved motion by motion before it is given out.
+
+    Attributes:
+        cspace: what is planned in.
+        parameters: see RoadmapParameters.
+        levels: the levels made so far, coarsest first.
+    """
+
+    def __init__(self, cspace: CSpace, parameters: RoadmapParameters | None = None) -> None:
+        """Prepare to plan; nothing is computed yet.
+
+        Raises:
+            PlannerError: if a parameter does not fit the C-space.
+        """
+        self.cspace = cspace
+        self.parameters = parameters or RoadmapParameters()
+        self.levels: list[Level] = []
+        self._axis = self.parameters.checked_axis(cspace.dimension)
+        self._random = np.random.default_rng(self.parameters.seed)
+        self._direct = 0
+
+    def solve(
+        self,
+        starts: Array,
+        goals: Array,
+        should_stop: Callable[[], bool],
+        on_path: Callable[[Array], None] | None = None,
+    ) -> Outcome:
+        """Look for a path from one of ``starts`` (S, d) to one of ``goals`` (G, d).
+
+        All must be valid. ``should_stop`` is asked every few milliseconds. With ``anytime``,
+        ``on_path`` receives every better path, and the search goes on until told to stop or until
+        nothing is left to try.
+        """
+        begin, end = self.cspace.poses(starts), self.cspace.poses(goals)
+        for first in begin:
+            for last in end:
+                direct = np.vstack([first, last])
+                if self._is_proved(direct):
+                    self._direct += 1
+                    return self._solved(direct, on_path)
+        best: Array | None = None
+        for index in range(self.parameters.refine + 1):
+            level = self._level(index, begin, end)
+            status, path = level.solve(
+                begin, end, self.parameters.inflation, self._weight(), should_stop
+            )
+            if status == roadmap.SOLVED and self._is_proved(path):
+                outcome = self._solved(path, on_path)
+                if not self.parameters.anytime:
+                    return outcome
+                best = self._improve(level, begin, end, path, should_stop, on_path)
+                break
+            if should_stop():
+                return Outcome(TIMEOUT)
+        if best is None:
+            return Outcome(EXHAUSTED)
+        return Outcome(SOLVED, configurations_from_poses(self.cspace.robot, best))
+
+    def clear(self) -> None:
+        """Forget everything computed so far."""
+        self.levels = []
+        self._random = np.random.default_rng(self.parameters.seed)
+        self._direct = 0
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """Counts over all levels since the last :meth:`clear`."""
+        total = {"levels": len(self.levels), "direct_motions": self._direct}
+        for level in self.levels:
+            for name, count in level.statistics.items():
+                total[name] = total.get(name, 0) + count
+        return total
+
+    def _weight(self) -> float:
+        if self.parameters.metric_weight is not None:
+            return self.parameters.metric_weight
+        reach = [
+            float(np.linalg.norm(part.centre) + part.semi_axes.max())
+            for part in self.cspace.robot.parts
+        ]
+        return 0.5 * max(reach)
+
+    def _level(self, index: int, starts: Array, goals: Array) -> Level:
+        while len(self.levels) <= index:
+            self.levels.append(self._new_level(len(self.levels)))
+        level = self.levels[index]
+        if self.cspace.rotates:
+            for first in starts:
+                for last in goals:
+                    for quaternion in between(first[3:], last[3:], _BETWEEN):
+                        level.grid.layer_of(quaternion)
+        return level
+
+    def _new_level(self, index: int) -> Level:
+        dimension, given = self.cspace.dimension, self.parameters
+        lines = given.lines or (24 if dimension == 2 else 10)
+        lines = round(lines * _MORE_LINES**index)
+        columns, neighbours = grid_columns(self.cspace.world, self._axis, lines)
+        if not self.cspace.rotates:
+            orientations = np.empty((0, 4))
+        else:
+            count = given.layers or (36 if dimension == 2 else 60)
+            orientations = spread_orientations(dimension, round(count * _MORE_LAYERS**index))
+            if index > 0:
+                orientations = random_turn(orientations, dimension, self._random)
+        joined = given.neighbours or (4 if dimension == 2 else 12)
+        grid = Grid(columns, neighbours, orientations, joined)
+        return Level(self.cspace, grid, self._axis)
+
+    def _is_proved(self, path: Array) -> bool:
+        counts = np.empty(len(path) - 1, dtype=np.int64)
+        motions_are_free(self.cspace.scene, path[:-1], path[1:], counts)
+        return bool(np.all(counts > 0))
+
+    def _solved(self, path: Array, on_path: Callable[[Array], None] | None) -> Outcome:
+        configurations = configurations_from_poses(self.cspace.robot, path)
+        if on_path is not None:
+            on_path(configurations)
+        return Outcome(SOLVED, configurations)
+
+    def _improve(
+        self,
+        level: Level,
+        starts: Array,
+        goals: Array,
+        best: Array,
+        should_stop: Callable[[], bool],
+        on_path: Callable[[Array], None] | None,
+    ) -> Array:
+        """Better paths by lower inflations and by shortening, until told to stop."""
+        best = self._shortened(best)
+        for inflation in _LOWER_INFLATIONS:
+            if should_stop():
+                return best
+            status, path = level.solve(starts, goals, inflation, self._weight(), should_stop)
+            if status == roadmap.SOLVED and self._is_proved(path):
+                best = self._better(best, self._shortened(path), on_path)
+        while not should_stop():
+            shorter = shorten(self.cspace, best, self._random, should_stop)
+            if self._length(shorter) > (1.0 - 1e-4) * self._length(best):
+                return self._better(best, shorter, on_path)
+            best = self._better(best, shorter, on_path)
+        return best
+
+    def _shortened(self, path: Array) -> Array:
+        kept = np.zeros(len(path), dtype=np.bool_)
+        shortcut(self.cspace.scene, path, kept)
+        return path[kept]
+
+    def _better(
+        self, best: Array, path: Array, on_path: Callable[[Array], None] | None
+    ) -> Array:
+        if not self._length(path) < self._length(best):
+            return best
+        self._solved(path, on_path)
+        return path
+
+    def _length(self, path: Array) -> float:
+        robot = self.cspace.robot
+        return path_length(robot, configurations_from_poses(robot, path))

@@ -1,0 +1,97 @@
+"""One level of the highway roadmap: a grid, its tables, and queries on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.roadmap.grid import Grid
+from ellipsoid_planning.roadmap.tables import grown, new_tables, with_grid
+
+Array = NDArray[np.float64]
+
+# Steps of the search between two looks at the clock: about 2 ms.
+_BURST = 256
+
+
+class Level:
+    """A roadmap of one resolution. What a query computes is kept for later ones.
+
+    Attributes:
+        grid: its columns and layers.
+        tables: lines, nodes and edges known so far (kernels.roadmap.Roadmap).
+    """
+
+    def __init__(self, cspace: CSpace, grid: Grid, axis: int) -> None:
+        """An empty roadmap on ``grid``, swept along ``axis``."""
+        self.grid = grid
+        self.axis = axis
+        self.tables = new_tables(grid, len(cspace.robot.parts))
+        self._scene = cspace.scene
+
+    def solve(
+        self,
+        starts: Array,
+        goals: Array,
+        inflation: float,
+        metric_weight: float,
+        should_stop: Callable[[], bool],
+    ) -> tuple[int, Array]:
+        """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
+
+        The status is kernels.roadmap's SOLVED, EXHAUSTED or, when told to stop, SEARCHING; there
+        are no poses unless SOLVED.
+        """
+        start_rows, goal_rows = self._rows(starts), self._rows(goals)
+        self.tables = grown(with_grid(self.tables, self.grid))
+        status = roadmap.begin(
+            self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
+        )
+        while status in (roadmap.SEARCHING, roadmap.GROW):
+            if status == roadmap.GROW:
+                self.tables = grown(self.tables)
+            status = roadmap.search(
+                self._scene, self.tables, goal_rows, self.axis, inflation, metric_weight, _BURST
+            )
+            if status == roadmap.SEARCHING and should_stop():
+                break
+        if status != roadmap.SOLVED:
+            return status, np.empty((0, 7))
+        return status, self._path(starts, goals)
+
+    def _rows(self, ends: Array) -> Array:
+        rows = [
+            [self.grid.layer_of(pose[3:]), *pose[:3], self.grid.column_of(pose[:3], self.axis)]
+            for pose in ends
+        ]
+        return np.array(rows, dtype=float)
+
+    def _path(self, starts: Array, goals: Array) -> Array:
+        last, goal = divmod(int(self.tables.counters[roadmap.GOAL_REACHED]), len(goals))
+        room = 64
+        count = 0
+        while count == 0:
+            room *= 2
+            out = np.empty((room, 7))
+            count = roadmap.trace(self.tables, last, self.axis, out)
+        path = np.vstack([out[:count][::-1], goals[goal]])
+        # The start is reached exactly; rows repeat where a line is left where it was entered.
+        changed = np.any(np.diff(path, axis=0) != 0.0, axis=1)
+        return path[np.concatenate([[True], changed])]
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """Counts of what has been computed so far."""
+        counters = self.tables.counters
+        return {
+            "layers": int(counters[roadmap.LAYERS_PLACED]),
+            "lines": int(counters[roadmap.LINES]),
+            "intervals": int(counters[roadmap.NODES]),
+            "edges_certified": int(counters[roadmap.PROVED]),
+            "edges_refused": int(counters[roadmap.REFUTED]),
+            "expansions": int(counters[roadmap.EXPANSIONS]),
+        }

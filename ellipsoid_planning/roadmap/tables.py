@@ -1,0 +1,98 @@
+"""The growing arrays of one roadmap level (see kernels.roadmap.Roadmap)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.kernels import layout, motion, roadmap, whitening
+from ellipsoid_planning.kernels.containers import EMPTY, rehash
+from ellipsoid_planning.kernels.roadmap import Roadmap
+from ellipsoid_planning.roadmap.grid import Grid
+
+_ROWS = 1 << 12
+_WHITENED = 1 << 14
+
+
+def _map(size: int) -> NDArray[np.int64]:
+    return np.full((2, size), EMPTY, dtype=np.int64)
+
+
+def new_tables(grid: Grid, parts: int) -> Roadmap:
+    """Empty tables for the columns and layers of ``grid`` and a robot of ``parts`` parts."""
+    workspace, placed, stack = motion.motion_workspaces()
+    return Roadmap(
+        orientations=grid.orientations,
+        layer_neighbours=grid.layer_neighbours,
+        columns=grid.columns,
+        column_neighbours=grid.column_neighbours,
+        placed=np.empty((len(grid.orientations), parts, layout.PLACED)),
+        ready=np.zeros(len(grid.orientations), dtype=np.bool_),
+        whitening=np.empty((_WHITENED, whitening.WHITEN)),
+        whitening_keys=np.full(_WHITENED, EMPTY, dtype=np.int64),
+        scratch=np.empty((1, 9)),
+        lines=_map(2 * _ROWS),
+        edges=_map(2 * _ROWS),
+        node_integers=np.zeros((_ROWS, roadmap.NODE_INTEGERS), dtype=np.int64),
+        node_reals=np.empty((_ROWS, roadmap.NODE_REALS)),
+        edge_reals=np.empty((_ROWS, 3)),
+        heap=np.empty(4 * _ROWS),
+        heap_items=np.empty(4 * _ROWS, dtype=np.int64),
+        entry_reals=np.empty((4 * _ROWS, 2)),
+        entry_integers=np.empty((4 * _ROWS, 3), dtype=np.int64),
+        counters=np.zeros(roadmap.COUNTERS, dtype=np.int64),
+        motion=workspace,
+        motion_placed=placed,
+        motion_stack=stack,
+    )
+
+
+def _longer(array: NDArray[Any], used: int) -> NDArray[Any]:
+    """``array``, or twice as long with the same beginning if more than 3/8 of it is used."""
+    if 8 * used <= 3 * len(array):
+        return array
+    out = np.zeros((2 * len(array), *array.shape[1:]), dtype=array.dtype)
+    out[: len(array)] = array
+    return out
+
+
+def _larger_map(table: NDArray[np.int64], used: int) -> NDArray[np.int64]:
+    if 8 * used <= 3 * table.shape[1]:
+        return table
+    larger = _map(2 * table.shape[1])
+    rehash(table, larger)
+    return larger
+
+
+def grown(tables: Roadmap) -> Roadmap:
+    """``tables`` with more room wherever it runs short."""
+    used = tables.counters
+    nodes, edges = int(used[roadmap.NODES]), int(used[roadmap.EDGES])
+    entries = int(used[roadmap.ENTRIES])
+    return tables._replace(
+        lines=_larger_map(tables.lines, int(used[roadmap.LINES])),
+        edges=_larger_map(tables.edges, edges),
+        node_integers=_longer(tables.node_integers, nodes),
+        node_reals=_longer(tables.node_reals, nodes),
+        edge_reals=_longer(tables.edge_reals, edges),
+        heap=_longer(tables.heap, entries),
+        heap_items=_longer(tables.heap_items, entries),
+        entry_reals=_longer(tables.entry_reals, entries),
+        entry_integers=_longer(tables.entry_integers, entries),
+    )
+
+
+def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:
+    """``tables`` for the same grid after columns or layers were added to it."""
+    new = len(grid.orientations) - len(tables.ready)
+    more = np.empty((new, *tables.placed.shape[1:]))
+    return tables._replace(
+        orientations=grid.orientations,
+        layer_neighbours=grid.layer_neighbours,
+        columns=grid.columns,
+        column_neighbours=grid.column_neighbours,
+        placed=np.concatenate([tables.placed, more]) if new else tables.placed,
+        ready=np.concatenate([tables.ready, np.zeros(new, dtype=np.bool_)]) if new else tables.ready,
+    )

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.geometry import Ellipsoid
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ellipsoid_planning.geometry import Ellipsoid
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from planners.view import colours
 from planners.view.figures_plane import finish
-from planners.view.layer_slice import LayerSlice
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from planners.view.layer_slice import LayerSlice
 
 LINES = 40
 

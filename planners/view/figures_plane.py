@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ellipsoid_planning.geometry import Ellipsoid
 from planners.view import colours
 from planners.view.embedding import outline
-from planners.view.trajectory import Trajectory
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from matplotlib.axes import Axes
     from matplotlib.patches import Ellipse
 
+    from ellipsoid_planning.geometry import Ellipsoid
     from ellipsoid_planning.scenario import Scenario
+    from planners.view.trajectory import Trajectory
 
 SWEPT_POSES = 24
 

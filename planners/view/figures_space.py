@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ellipsoid_planning.geometry import Ellipsoid
 from planners.view import colours
 from planners.view.camera import Camera, frame, side_view
-from planners.view.surfaces import ellipsoid_patches, tube_patches
-from planners.view.trajectory import Trajectory
+from planners.view.surfaces import ellipsoid_patches, path_radius, tube_patches
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from collections.abc import Iterable
 
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from ellipsoid_planning.geometry import Ellipsoid
     from ellipsoid_planning.scenario import Scenario
+    from planners.view.trajectory import Trajectory
 
 SWEPT_POSES = 12
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
-AMBIENT = 0.5
-ARENA_AMBIENT = 0.8
 
 
 class Painting:
@@ -38,7 +37,7 @@ class Painting:
 
         `inside` adds the far side instead, of which one sees the inner face, dimly shaded.
         """
-        ambient = ARENA_AMBIENT if inside else AMBIENT
+        darkest, brightest = (0.85, 1.0) if inside else (0.55, 1.3)
         seen = self.camera.axes(patches.reshape(-1, 3)).reshape(-1, 4, 3)
         normals = np.cross(seen[:, 2] - seen[:, 0], seen[:, 3] - seen[:, 1])
         length = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -47,9 +46,10 @@ class Painting:
             normals = -normals
         facing = normals[:, 2] > 0.0
         # Light that reaches around the body ("half Lambert") keeps the dark side readable.
-        light = ambient + (1.0 - ambient) * (0.5 + 0.5 * (normals[facing] @ LIGHT)) ** 1.5
+        lit = (0.5 + 0.5 * (normals[facing] @ LIGHT)) ** 1.5
+        light = darkest + (brightest - darkest) * lit
         self._patches.append(seen[facing])
-        self._colours.append(light[:, None] * np.array(colours.rgb(colour)))
+        self._colours.append(np.clip(light[:, None] * colours.rgb(colour), 0.0, 1.0))
 
     def paint(self, axes: Axes, zorder: float, alpha: float = 1.0) -> None:
         """Paint everything added so far, and forget it."""
@@ -116,9 +116,9 @@ def _add_bodies(
 def _add_swept(painting: Painting, scenario: Scenario, trajectory: Trajectory) -> None:
     for configuration in trajectory.evenly(SWEPT_POSES)[1:-1]:
         for body in scenario.robot.bodies_at(configuration):
-            painting.add(ellipsoid_patches(body, 40, 20), colours.tint(colours.ROBOT, 0.45))
+            painting.add(ellipsoid_patches(body, 40, 20), colours.tint(colours.ROBOT, 0.3))
     positions = trajectory.configurations[:, :3]
-    radius = 0.003 * painting.camera.distance
+    radius = path_radius(scenario.robot.parts, 0.5 * painting.camera.distance)
     painting.add(tube_patches(positions, radius, sides=6), colours.PATH)
 
 

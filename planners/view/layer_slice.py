@@ -11,16 +11,17 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.geometry.minkowski import minkowski_sum_boundary
 from planners.view.convex import Support, intersect_half_planes, section_support
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from ellipsoid_planning.cspace.layer import Layer
     from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.geometry import Ellipsoid
 
 DIRECTIONS = 240
 

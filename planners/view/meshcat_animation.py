@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from planners.view.embedding import Embedding
-from planners.view.trajectory import Trajectory
+if TYPE_CHECKING:
+    from planners.view.embedding import Embedding
+    from planners.view.trajectory import Trajectory
 
 SECONDS = 8.0
 PAUSE_SECONDS = 1.0  # at the goal, before it starts again

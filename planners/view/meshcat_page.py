@@ -10,6 +10,7 @@ import base64
 import functools
 import html
 import json
+import math
 import tempfile
 import webbrowser
 from pathlib import Path
@@ -137,11 +138,10 @@ def _caption(scenario: Scenario, result: PlanResult | None) -> list[str]:
         return [*lines, f"{result.planner}: {result.status}, no path"]
     path = result.path
     proof = "certified" if path.certified else "not certified"
-    return [
-        *lines,
-        f"{result.planner}: path of length {path.length:.4g}, {proof}, "
-        f"clearance at least {path.min_clearance:.3g}",
-    ]
+    summary = f"{result.planner}: path of length {path.length:.4g}, {proof}"
+    if math.isfinite(path.min_clearance):
+        summary += f", clearance at least {path.min_clearance:.3g}"
+    return [*lines, summary]
 
 
 def _legend_entry(scene: Scene, folder: str, colour: str) -> str:

@@ -6,21 +6,22 @@ printed. `meshcat_page` puts them into a file.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ellipsoid_planning.geometry import Ellipsoid
 from planners.view import colours, meshcat_shapes
 from planners.view.camera import FIELD_OF_VIEW_DEG, Camera, frame, side_view
 from planners.view.embedding import ABOVE, FLOOR, SOLID, Embedding, Slab, outline
 from planners.view.meshcat_animation import animate
+from planners.view.surfaces import path_radius
 from planners.view.trajectory import Trajectory, follow
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from ellipsoid_planning.geometry import Ellipsoid
+    from collections.abc import Iterable, Sequence
     from ellipsoid_planning.result import PlanResult
     from ellipsoid_planning.roadmap.graph import RoadmapGraph
     from ellipsoid_planning.scenario import Scenario
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 ROOT = "scenario"
 EYE_DISTANCE = 2.0  # at which meshcat's own lights suit the scene
 THICKNESS = 0.012  # of a planar body, as a part of the scene's size
-TUBE = 0.005  # radius of the path, as a part of the scene's size
+FRAME_RADIUS = 0.0015  # of an arena's outline or the bounds' edges, likewise
 DOT = 0.01  # size of a roadmap's node, as a part of the eye's distance
 BACK_SIDE = 1  # three.js: draw the far wall only, so that the inside is visible
 
@@ -109,7 +110,8 @@ class _SceneBuilder:
         n = self.world.dimension
         corners = _simplified(trajectory.configurations[:, :n])
         self.folders.append(("path", colours.PATH))
-        self._draw_tube("path", self.embedding.points(corners), colours.PATH)
+        radius = path_radius(self.robot.parts, self.size)
+        self._draw_tube("path", self.embedding.points(corners), colours.PATH, radius)
         fixed = np.eye(n) if self.robot.orientation is None else self.robot.orientation
         parts = [part.transform(fixed, np.zeros(n)) for part in self.robot.parts]
         self._draw_bodies("robot", parts, colours.ROBOT, ABOVE)
@@ -155,13 +157,15 @@ class _SceneBuilder:
             for arena, name in _named(self.world.arenas):
                 ring = self.embedding.points(outline(arena), FLOOR)
                 closed = np.concatenate([ring, ring[:1]])
-                self._draw_tube(f"arena/{name} boundary", closed, colours.ARENA)
+                self._draw_tube(
+                    f"arena/{name} boundary", closed, colours.ARENA, 2.0 * FRAME_RADIUS * self.size
+                )
 
     def _draw_bounds(self) -> None:
         self.folders.append(("bounds", colours.FRAME))
         for index, edge in enumerate(_box_edges(self.world.low, self.world.high)):
             points = self.embedding.points(edge, SOLID)
-            self._draw_tube(f"bounds/edge {index}", points, colours.FRAME, 0.3)
+            self._draw_tube(f"bounds/edge {index}", points, colours.FRAME, FRAME_RADIUS * self.size)
 
     def _draw_bodies(
         self, folder: str, bodies: Sequence[Ellipsoid], colour: str, slab: Slab, **look: Any
@@ -174,9 +178,8 @@ class _SceneBuilder:
             node.set_transform(self.embedding.matrix(body, slab))
 
     def _draw_tube(
-        self, path: str, points: NDArray[np.float64], colour: str, width: float = 1.0
+        self, path: str, points: NDArray[np.float64], colour: str, radius: float
     ) -> None:
-        radius = width * TUBE * self.size * (1.0 if self.world.dimension == 3 else 0.6)
         self.root[path].set_object(
             meshcat_shapes.tube(points, radius), meshcat_shapes.material(colour)
         )

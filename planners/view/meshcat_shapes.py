@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from planners.view import colours
 from planners.view.surfaces import triangles, tube_patches
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class CommandRecorder:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ellipsoid_planning.geometry import Ellipsoid
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
 
 
 def ellipsoid_patches(
@@ -42,6 +47,17 @@ def tube_patches(
         if np.linalg.norm(second - first) > 1e-9 * radius:
             pieces.append(_cylinder_patches(first, second, radius, sides))
     return np.concatenate(pieces)
+
+
+def path_radius(parts: Iterable[Ellipsoid], size: float) -> float:
+    """Return how thick to draw the path of a robot: thinner than it, visible in the scene.
+
+    Args:
+        parts: of the robot.
+        size: of the scene, in the same unit of length.
+    """
+    longest = max(float(part.semi_axes.max()) for part in parts)
+    return float(np.clip(0.15 * longest, 0.0015 * size, 0.005 * size))
 
 
 def triangles(patches: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
 
 
 class InterpolatedSpace(Protocol):
     """What a trajectory needs of a `CSpace`: OMPL's metric and OMPL's interpolation."""
 
-    def distance(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float: ...
+    def distance(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+        """Return OMPL's distance of two configurations (d,)."""
+        ...
 
     def interpolate(
         self, first: NDArray[np.float64], second: NDArray[np.float64], s: float
-    ) -> NDArray[np.float64]: ...
+    ) -> NDArray[np.float64]:
+        """Return the configuration (d,) at the fraction s of the motion."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ def test_axes_are_a_right_handed_frame(azimuth):
 
 def test_from_above_x_is_right_and_y_is_up():
     camera = frame(POINTS, None)
-    (x, y), (u, v) = camera.pixels(camera.centre + [[0, 0, 0], [1.0, 1.0, 0]], 80, 60)
+    (x, y), (u, v) = camera.pixels(camera.centre + np.array([[0, 0, 0], [1, 1, 0]]), 80, 60)
     assert u > x
     assert v < y
 

@@ -97,7 +97,7 @@ def test_the_layer_shows_c_obstacles_intervals_and_roadmap():
     assert len(edges.get_segments()) > 20
     assert "heading 0°" in layer.get_title(loc="left")
     # Below the pillar's centre, half-way between two lines: the C-obstacles' fill.
-    pillar = scenario.world.obstacles[0].centre + [0.3, 0.0]
+    pillar = scenario.world.obstacles[0].centre + np.array([0.3, 0.0])
     red, green, blue = colour_at(picture, layer, pillar)
     assert red > green > blue
 
@@ -131,7 +131,7 @@ def test_the_robot_is_swept_along_the_path():
         path.get_xydata()[[0, -1]], result.path.configurations[[0, -1], :2]
     )
     middle = path.get_xydata()[len(path.get_xydata()) // 2]
-    beside = colour_at(picture, drawn.axes[0], middle + [0.0, 1.8])
+    beside = colour_at(picture, drawn.axes[0], middle + np.array([0.0, 1.8]))
     assert resembles(beside, colours.tint(colours.ROBOT, 0.55), 0.2)
 
 

@@ -150,9 +150,8 @@ def test_a_page_starts_no_process_and_prints_nothing():
         "assert children == [], children\n"
         "assert threading.active_count() == 1, threading.enumerate()\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60
-    )
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
@@ -191,5 +190,5 @@ def test_open_in_browser_hands_over_a_file_address(tmp_path, monkeypatch):
     path = open_in_browser("page", tmp_path / "page.html")
     assert opened == [path.as_uri()]
     assert path.read_text() == "page"
-    monkeypatch.setattr(meshcat_page.tempfile, "mkdtemp", lambda prefix: str(tmp_path))
+    monkeypatch.setattr(meshcat_page.tempfile, "mkdtemp", lambda **_: str(tmp_path))
     assert open_in_browser("other").read_text() == "other"

@@ -11,6 +11,7 @@ Nothing else in the plug-in touches them. What the wrappers protect from:
   information; `si.allocState` does not. `freeState` on a state that Python holds crashes.
 - *Cycles.* A motion validator that holds `si`, or a sampler allocator whose closure holds it, keeps
   the whole set-up alive for ever. `BITstar.getPlannerData` does so on its own.
+- *Destruction.* An AORRTC that was never set up crashes when it is deleted.
 - *Threads.* PRM and PRMstar run a second thread. A termination condition made from a Python
   function, a Python objective or a Python goal deadlocks there, and an exception in a callback
   (Ctrl-C is one) aborts the process. All conditions here are C++ objects.
@@ -156,30 +157,28 @@ def start_configurations(planner: ob.Planner, access: StateAccess) -> NDArray[np
     """All *valid* start states of the planner's problem, shape (k, d)."""
     inputs = planner.getPlannerInputStates()
     inputs.restart()
-    return _drain(inputs.nextStart, access, limit=None)
+    rows = []
+    while (state := inputs.nextStart()) is not None:
+        rows.append(access.read(state))
+    return _as_rows(rows, access)
 
 
 def goal_configurations(
     planner: ob.Planner, access: StateAccess, limit: int = 100
 ) -> NDArray[np.float64]:
-    """Up to ``limit`` *valid* goal states of the planner's problem, shape (k, d).
+    """The *valid* ones of up to ``limit`` goal states of the planner's problem, shape (k, d).
 
     Goal regions that can be sampled for ever are sampled ``limit`` times.
     """
     inputs = planner.getPlannerInputStates()
     inputs.restart()
-    return _drain(inputs.nextGoal, access, limit)
-
-
-def _drain(
-    following: Callable[[], ob.State | None], access: StateAccess, limit: int | None
-) -> NDArray[np.float64]:
-    rows: list[tuple[float, ...]] = []
-    while limit is None or len(rows) < limit:
-        state = following()
-        if state is None:
+    rows = []
+    for _ in range(limit):
+        if not inputs.haveMoreGoalStates():
             break
-        rows.append(access.read(state))
+        state = inputs.nextGoal()  # one draw; None when it is invalid, though others may follow
+        if state is not None:
+            rows.append(access.read(state))
     return _as_rows(rows, access)
 
 
@@ -229,6 +228,9 @@ def simplified(
 def allocate_bound_planner(name: str, si: ob.SpaceInformation) -> ob.Planner:
     """A new planner of the bound class ``ompl.geometric.<name>``."""
     planner: ob.Planner = getattr(og, name)(si)
+    if isinstance(planner, og.AORRTC):
+        with ompl_output("silent"):
+            planner.setup()
     return planner
 
 
@@ -256,8 +258,11 @@ def graph_of_planner(
 
 
 def graph_size_of_planner(planner: ob.Planner) -> tuple[int, int] | None:
-    """Numbers of vertices and edges of a bound planner; None where asking would leak (BITstar)."""
-    if isinstance(planner, og.BITstar):
+    """Numbers of vertices and edges of a bound planner.
+
+    None where asking would leak (BITstar), or the planner keeps its graph to itself (AORRTC).
+    """
+    if isinstance(planner, og.BITstar | og.AORRTC):
         return None
     data = _planner_data(planner)
     return int(data.numVertices()), int(data.numEdges())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ def is_certified(cspace: CSpace, configurations: NDArray[np.float64]) -> bool:
     """Whether every state and every segment of a path (m, d) is proved free, in continuous time."""
     if len(configurations) == 1:
         return bool(cspace.is_valid(configurations[0]))
-    pairs = zip(configurations[:-1], configurations[1:], strict=True)
+    pairs = pairwise(configurations)
     return all(cspace.is_motion_valid(first, second) for first, second in pairs)
 
 
@@ -25,7 +26,7 @@ def path_clearance(cspace: CSpace, configurations: NDArray[np.float64]) -> float
     """Proved lower bound of the clearance along a path (m, d); not positive if not certified."""
     if len(configurations) == 1:
         return float(cspace.clearance(configurations[0]))
-    pairs = zip(configurations[:-1], configurations[1:], strict=True)
+    pairs = pairwise(configurations)
     return min(float(cspace.motion_clearance(first, second)) for first, second in pairs)
 
 

@@ -19,6 +19,7 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.world import World
 
 from .spaces import check_space, state_access
+from .validity import state_check
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
@@ -92,15 +93,15 @@ class FclValidityChecker(ob.StateValidityChecker):
         self.cspace = cspace
         self._access = state_access(cspace)
         self._enclosure = _without_obstacles(cspace)
+        self._is_enclosed = state_check(self._enclosure)
         self._bodies = FclBodies(cspace)
         self._fixed = _embedded_rotation(cspace.robot.orientation)
 
     def isValid(self, state: ob.State) -> bool:  # noqa: N802
         """Whether ``state`` is valid."""
-        configuration = np.array(self._access.read(state))
-        if not self._enclosure.is_valid(configuration):
+        if not self._is_enclosed(state):
             return False
-        self._place(configuration)
+        self._place(np.array(self._access.read(state)))
         required = self.cspace.clearance_required
         if required > 0.0:
             return self._bodies.distance() >= required

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-import numpy as np
 from ompl import base as ob
 
-from .spaces import check_space, state_access
+from ellipsoid_planning.kernels.motion import planar_motion_is_free, spatial_motion_is_free
+
+from .spaces import check_space, fixed_quaternion
+from .validity import UNIT_TOLERANCE
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
@@ -46,10 +49,57 @@ class CertifiedMotionValidator(ob.MotionValidator):
 
 
 def motion_check(cspace: CSpace) -> MotionCheck:
-    """The fastest way from two states of ``cspace`` to the certificate of their motion."""
-    read = state_access(cspace).read
+    """The fastest way from two states of ``cspace`` to the certificate: scalars into one kernel."""
+    if cspace.rotates:
+        return _check_se2(cspace) if cspace.dimension == 2 else _check_se3(cspace)
+    return _check_vector(cspace)
+
+
+def _check_se2(cspace: CSpace) -> MotionCheck:
+    scene, pi = cspace.scene, math.pi
 
     def check(first: ob.State, second: ob.State) -> bool:
-        return bool(cspace.is_motion_valid(np.array(read(first)), np.array(read(second))))
+        yaw0, yaw1 = first.getYaw(), second.getYaw()
+        if not (-pi <= yaw0 <= pi and -pi <= yaw1 <= pi):
+            return False
+        x1, y1 = second.getX(), second.getY()
+        free: bool = planar_motion_is_free(scene, first.getX(), first.getY(), yaw0, x1, y1, yaw1)
+        return free
+
+    return check
+
+
+def _check_se3(cspace: CSpace) -> MotionCheck:
+    scene = cspace.scene
+    low, high = 1.0 - UNIT_TOLERANCE, 1.0 + UNIT_TOLERANCE
+
+    def check(first: ob.State, second: ob.State) -> bool:
+        p, q = first.rotation(), second.rotation()
+        px, py, pz, pw = p.x, p.y, p.z, p.w
+        qx, qy, qz, qw = q.x, q.y, q.z, q.w
+        if not low <= px * px + py * py + pz * pz + pw * pw <= high:
+            return False
+        if not low <= qx * qx + qy * qy + qz * qz + qw * qw <= high:
+            return False
+        x0, y0, z0 = first.getX(), first.getY(), first.getZ()
+        x1, y1, z1 = second.getX(), second.getY(), second.getZ()
+        free: bool = spatial_motion_is_free(
+            scene, x0, y0, z0, px, py, pz, pw, x1, y1, z1, qx, qy, qz, qw
+        )
+        return free
+
+    return check
+
+
+def _check_vector(cspace: CSpace) -> MotionCheck:
+    scene, planar = cspace.scene, cspace.dimension == 2
+    q = fixed_quaternion(cspace)
+
+    def check(first: ob.State, second: ob.State) -> bool:
+        z0, z1 = (0.0, 0.0) if planar else (first[2], second[2])
+        free: bool = spatial_motion_is_free(
+            scene, first[0], first[1], z0, *q, second[0], second[1], z1, *q
+        )
+        return free
 
     return check

@@ -55,9 +55,21 @@ class BoundPlanner:
         from .bindings import allocate_bound_planner
 
         planner = allocate_bound_planner(self.name, si)
-        for name, value in values.items():
-            _set(self.name, name, value, getattr(planner, self.parameters[name].setter))
+        # In the table's order: BITstar samples just in time only after k-nearest is off.
+        for name in (name for name in self.parameters if name in values):
+            _set(self.name, name, values[name], getattr(planner, self.parameters[name].setter))
+        self._check_taken(planner, values)
         return planner
+
+    def _check_taken(self, planner: ob.Planner, values: Mapping[str, Any]) -> None:
+        # OMPL refuses some combinations with a line in its log and nothing else.
+        for name, value in values.items():
+            getter = getattr(planner, "get" + self.parameters[name].setter.removeprefix("set"))
+            if getter() != value:
+                raise PlannerError(
+                    f"{self.name}.{name}: {value!r} is not taken, it stays at {getter()!r};"
+                    " it does not go together with other parameters"
+                )
 
 
 @dataclass(frozen=True)
@@ -103,15 +115,15 @@ _INTERMEDIATE = _table(bool, intermediate_states="setIntermediateStates")
 _CELLS = _table(
     float, border_fraction="setBorderFraction", min_valid_path_fraction="setMinValidPathFraction"
 )
-_CELL_FAILURE = _table(
-    float, failed_expansion_score_factor="setFailedExpansionCellScoreFactor"
-)
+_CELL_FAILURE = _table(float, failed_expansion_score_factor="setFailedExpansionCellScoreFactor")
 _NEIGHBOURS = _table(int, max_nearest_neighbors="setMaxNearestNeighbors")
 _RRT_STAR = {
     **_RANGE,
     **_BIAS,
     **_table(float, rewire_factor="setRewireFactor", prune_threshold="setPruneThreshold"),
-    **_table(int, ordering_batch_size="setBatchSize", number_sampling_attempts="setNumSamplingAttempts"),
+    **_table(
+        int, ordering_batch_size="setBatchSize", number_sampling_attempts="setNumSamplingAttempts"
+    ),
     **_table(
         bool,
         use_k_nearest="setKNearest",
@@ -137,8 +149,6 @@ _BIT_STAR = {
         bool,
         use_k_nearest="setUseKNearest",
         use_graph_pruning="setPruning",
-        use_strict_queue_ordering="setStrictQueueOrdering",
-        delay_rewiring_to_first_solution="setDelayRewiringUntilInitialSolution",
         use_just_in_time_sampling="setJustInTimeSampling",
         drop_unconnected_samples_on_prune="setDropSamplesOnPrune",
         stop_on_each_solution_improvement="setStopOnSolnImprovement",
@@ -147,7 +157,9 @@ _BIT_STAR = {
 }
 _FMT = {
     **_table(int, num_samples="setNumSamples"),
-    **_table(float, radius_multiplier="setRadiusMultiplier", free_space_volume="setFreeSpaceVolume"),
+    **_table(
+        float, radius_multiplier="setRadiusMultiplier", free_space_volume="setFreeSpaceVolume"
+    ),
     **_table(
         bool,
         use_k_nearest="setNearestK",

@@ -17,8 +17,8 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.result import PlanResult
 
 from . import bindings
-from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
 from .certify import is_certified, path_result
+from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
 from .setup import CHECKERS, Checker, simple_setup
 from .spaces import state_access, write_configuration
 
@@ -248,7 +248,8 @@ def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: _Request) -> N
 
 
 def _result(request: _Request, run: _Run) -> PlanResult:
-    statistics = dict(run.statistics)
+    statistics, found = dict(run.statistics), run.configurations
+    path = None if found is None else path_result(request.cspace, found)
     return PlanResult(
         scenario=request.scenario,
         planner=request.entry.name,
@@ -259,7 +260,7 @@ def _result(request: _Request, run: _Run) -> PlanResult:
             "build": statistics.pop("build_time", None),
             "search": statistics.pop("search_time", None),
         },
-        path=None if run.configurations is None else path_result(request.cspace, run.configurations),
+        path=path,
         statistics=statistics,
         version=__version__,
     )

@@ -8,7 +8,6 @@ without it) and cost 0.15 to 0.3 microseconds.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,7 +17,6 @@ from numpy.typing import NDArray
 from ompl import base as ob
 
 from ellipsoid_planning.errors import PlannerError
-from ellipsoid_planning.geometry.orientation import quaternion_from_rotation, yaw_from_rotation
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
@@ -96,13 +94,7 @@ def state_access(cspace: CSpace) -> StateAccess:
 
 def fixed_quaternion(cspace: CSpace) -> tuple[float, float, float, float]:
     """The unit quaternion (x, y, z, w) of a robot that only translates, as kernels take it."""
-    rotation = cspace.robot.orientation
-    if rotation is None:
-        return 0.0, 0.0, 0.0, 1.0
-    if cspace.dimension == 2:
-        half = 0.5 * yaw_from_rotation(rotation)
-        return 0.0, 0.0, math.sin(half), math.cos(half)
-    qx, qy, qz, qw = quaternion_from_rotation(rotation).tolist()
+    qx, qy, qz, qw = cspace.poses(np.zeros(cspace.dimension))[0][3:].tolist()
     return qx, qy, qz, qw
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
     from planners.view.trajectory import Trajectory
 
-SWEPT_POSES = 12
+SWEPT_POSES = 9
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
 
 

@@ -57,7 +57,7 @@ def path_radius(parts: Iterable[Ellipsoid], size: float) -> float:
         size: of the scene, in the same unit of length.
     """
     longest = max(float(part.semi_axes.max()) for part in parts)
-    return float(np.clip(0.15 * longest, 0.0015 * size, 0.005 * size))
+    return float(np.clip(0.15 * longest, 0.0015 * size, 0.004 * size))
 
 
 def triangles(patches: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -19,9 +19,11 @@ from planners.view.surfaces import path_radius
 from planners.view.trajectory import Trajectory, follow
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from ellipsoid_planning.geometry import Ellipsoid
     from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from ellipsoid_planning.geometry import Ellipsoid
     from ellipsoid_planning.result import PlanResult
     from ellipsoid_planning.roadmap.graph import RoadmapGraph
     from ellipsoid_planning.scenario import Scenario

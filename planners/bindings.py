@@ -76,7 +76,7 @@ def set_seed(seed: int) -> None:
     Raises:
         PlannerError: ``seed`` is not an integer in [0, 2**32).
     """
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**32:
+    if type(seed) is not int or not 0 <= seed < 2**32:  # True is an int, but no seed
         raise PlannerError(f"seed: expected an integer in [0, 2**32), got {seed!r}")
     with ompl_output("silent"):  # a second call works, but logs an error
         ou.RNG.setSeed(seed or SEED_INSTEAD_OF_ZERO)

@@ -73,8 +73,10 @@ def simple_setup(
 
     Args:
         scenario: what to plan for; its goal is an exact goal state.
-        checker: see `install`, as for ``resolution`` and ``uniform_sampling``.
+        checker: "plugin" or "fcl", see `install`.
         seed: seeds OMPL's random numbers before anything random is made, unless None.
+        resolution: see `install`.
+        uniform_sampling: see `install`.
         cspace: of the scenario, if it exists already.
 
     Raises:

@@ -63,7 +63,10 @@ def _check_se2(cspace: CSpace) -> StateCheck:
 
     def check(state: ob.State) -> bool:
         yaw = state.getYaw()
-        return -pi <= yaw <= pi and planar_is_free(scene, state.getX(), state.getY(), yaw)
+        if not -pi <= yaw <= pi:
+            return False
+        free: bool = planar_is_free(scene, state.getX(), state.getY(), yaw)
+        return free
 
     return check
 

@@ -120,7 +120,7 @@ def test_starts_and_goals_outlive_their_states():
     assert_clean("""
 setup, planner, access = problem()
 setup.setup()
-for _ in range(100):
+for _ in range(10):
     bindings.start_configurations(planner, access), bindings.goal_configurations(planner, access)
     gc.collect()
 """)
@@ -134,7 +134,7 @@ def main():
         assert setup.solve(bindings.stop_after(2.0))
     si = setup.getSpaceInformation()
     path = bindings.configurations_of_path(setup.getSolutionPath(), access)
-    for _ in range(50):
+    for _ in range(20):
         shorter = bindings.simplified(si, path, access, bindings.stop_after(1.0))
         again = bindings.configurations_of_path(setup.getSolutionPath(), access)
         assert np.array_equal(path, again)

@@ -17,10 +17,7 @@ def test_samples_are_valid_and_spread_out(kind, uniform):
     cspace = scenario_of(kind, clearance=0.1).cspace()
     si = space_information(cspace)
     sampler, state = FreeIntervalSampler(si, cspace, uniform, seed=4), si.allocState()
-    drawn = []
-    for _ in range(300):
-        if sampler.sample(state):
-            drawn.append(read_configuration(state, cspace))
+    drawn = [read_configuration(state, cspace) for _ in range(300) if sampler.sample(state)]
     assert len(drawn) > 100
     assert cspace.are_valid(np.array(drawn)).all()
     assert np.ptp(np.array(drawn)[:, : cspace.dimension], axis=0).min() > 3.0
@@ -71,9 +68,7 @@ def test_ompls_seed_governs_the_samplers():
         samplers = [FreeIntervalSampler(si, cspace) for _ in range(2)]
         state, rows = si.allocState(), []
         for _ in range(20):
-            for sampler in samplers:
-                if sampler.sample(state):
-                    rows.append(read_configuration(state, cspace))
+            rows += [read_configuration(state, cspace) for s in samplers if s.sample(state)]
         runs.append(np.array(rows))
     assert np.array_equal(runs[0], runs[1])
     assert len(np.unique(runs[0], axis=0)) == len(runs[0])

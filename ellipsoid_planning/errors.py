@@ -65,3 +65,7 @@ class PlannerError(EllipsoidPlanningError):
 
 class ResultError(EllipsoidPlanningError):
     """A result file that cannot be read, or that contradicts itself."""
+
+
+class ContradictionError(ResultError):
+    """A well-formed result whose numbers contradict its own path: someone changed the file."""

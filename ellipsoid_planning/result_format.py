@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.errors import ResultError, ScenarioError
+from ellipsoid_planning.errors import ContradictionError, ResultError, ScenarioError
 from ellipsoid_planning.metric import base_travel, path_length
 from ellipsoid_planning.result import FORMAT, STATUSES, PathResult
 from ellipsoid_planning.robots.rigid import RigidRobot
@@ -107,7 +107,8 @@ class _Reader:
         stated = self._entry(entry, key, float, "path.")
         if not abs(stated - computed) <= AGREEMENT * (1.0 + computed):
             problem = f"says {stated:.9g}, but its configurations give {computed:.9g}"
-            raise self._error(f"path.{key}", f"{problem}; the file was changed, plan again")
+            message = f"path.{key}: {problem}; the file was changed, plan again"
+            raise ContradictionError(": ".join(part for part in (self._file, message) if part))
 
     def _optional(self, entry: Mapping[str, Any], key: str, kind: type, parent: str = "") -> Any:
         if key in entry and entry[key] is None:

@@ -1,0 +1,73 @@
+"""The command `ellipsoid-planning`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ellipsoid_planning import __version__
+from planners.cli.command_group import CommandGroup
+from planners.cli.figure import figure
+from planners.cli.plan import plan
+from planners.cli.scenarios import scenarios
+from planners.cli.schema import schema
+from planners.cli.show import show
+from planners.cli.verify import verify
+
+PROGRAM = "ellipsoid-planning"
+
+app = typer.Typer(
+    cls=CommandGroup,
+    name=PROGRAM,
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"{PROGRAM} {__version__}")
+        raise typer.Exit
+
+
+@app.callback(
+    epilog=(
+        "Exit codes: 0 done, solved, verified; 1 no path within the limit, not verified; "
+        "2 bad input; 130 interrupted. Results go to stdout, everything else to stderr."
+    )
+)
+def _root(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
+        ),
+    ] = False,
+) -> None:
+    """Plan collision-free paths for robots made of ellipsoids, and prove them.
+
+    Get going:
+
+    [bold]ellipsoid-planning scenarios[/bold]  (what there is to plan)
+
+    [bold]ellipsoid-planning plan rabbit-3d-open --output path.json --html path.html[/bold]
+
+    [bold]ellipsoid-planning verify path.json[/bold]
+    """
+
+
+for command in (plan, show, figure, scenarios, verify, schema):
+    app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
+
+
+def main() -> None:
+    """Run the command line; the process ends with the exit code."""
+    app(prog_name=PROGRAM)
+
+
+if __name__ == "__main__":
+    main()

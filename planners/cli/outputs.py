@@ -1,0 +1,78 @@
+"""Output files: checked before the work begins, written whole."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ellipsoid_planning import atomic
+from ellipsoid_planning.errors import EllipsoidPlanningError
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.result import PlanResult
+
+COLUMNS = {
+    (2, True): ("x", "y", "yaw"),
+    (3, True): ("x", "y", "z", "qx", "qy", "qz", "qw"),
+    (2, False): ("x", "y"),
+    (3, False): ("x", "y", "z"),
+}
+
+
+def check_outputs(**outputs: Path | None) -> None:
+    """Check that files can be written where the options, by name, want them.
+
+    Raises:
+        EllipsoidPlanningError: a folder is missing or is not one, an output is a folder, or two
+            options name the same file.
+    """
+    taken: dict[Path, str] = {}
+    for option, path in outputs.items():
+        if path is None:
+            continue
+        _check_output(f"--{option}", path)
+        other = taken.setdefault(path.resolve(), option)
+        if other != option:
+            raise EllipsoidPlanningError(
+                f"--{other} and --{option}: expected two files, both are {path}; rename one"
+            )
+
+
+def _check_output(option: str, path: Path) -> None:
+    folder = path.parent
+    if not folder.exists():
+        raise EllipsoidPlanningError(
+            f"{option} {path}: the folder {str(folder)!r} does not exist; create it first"
+        )
+    if not folder.is_dir():
+        raise EllipsoidPlanningError(f"{option} {path}: {str(folder)!r} is a file, not a folder")
+    if path.is_dir():
+        raise EllipsoidPlanningError(f"{option} {path}: expected a file name, this is a folder")
+
+
+def write_csv(result: PlanResult, output: Path) -> None:
+    """Write the interpolated path: a header, then one row a configuration.
+
+    The first column is the length travelled so far in OMPL's metric; headings are in radians,
+    quaternions (x, y, z, w). Every state of the path is among the rows.
+
+    Raises:
+        EllipsoidPlanningError: the file cannot be written.
+    """
+    from planners.view.trajectory import follow
+
+    scenario = result.scenario
+    if result.path is None:
+        raise EllipsoidPlanningError(f"{output}: there is no path to write")
+    trajectory = follow(scenario.cspace(), result.path.configurations)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("travelled", *COLUMNS[scenario.dimension, scenario.robot.rotates]))
+    travelled, rows = trajectory.travelled.tolist(), trajectory.configurations.tolist()
+    writer.writerows([length, *row] for length, row in zip(travelled, rows, strict=True))
+    try:
+        atomic.write_text(output, text.getvalue())
+    except OSError as error:
+        raise EllipsoidPlanningError(f"{output}: cannot write the file: {error.strerror}") from None

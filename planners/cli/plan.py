@@ -1,0 +1,164 @@
+"""``plan``: a scenario goes in, a proved path comes out."""
+
+from __future__ import annotations
+
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from planners.cli.command_group import BAD_INPUT, NO_PATH, SOLVED
+from planners.cli.outputs import check_outputs, write_csv
+from planners.cli.settings import planner_parameters
+from planners.cli.terminal import result_console, say, working, working_with_kernels
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.result import PlanResult
+    from ellipsoid_planning.scenario import Scenario
+
+
+DEFAULT_PLANNER = "HighwayRoadmap"
+
+
+class CheckerName(str, Enum):
+    """The collision checkers, as the command line offers them."""
+
+    plugin = "plugin"
+    fcl = "fcl"
+
+
+def plan(
+    scenario: Annotated[
+        str,
+        typer.Argument(metavar="SCENARIO", help="A YAML file, or the name of a bundled scenario."),
+    ],
+    planner: Annotated[
+        str | None,
+        typer.Option(
+            help="HighwayRoadmap or an OMPL planner: RRTConnect, PRM, BITstar, ... "
+            "[dim]By default the scenario's own, or else HighwayRoadmap.[/dim]"
+        ),
+    ] = None,
+    checker: Annotated[
+        CheckerName,
+        typer.Option(help="Exact, certified checks, or python-fcl at a resolution."),
+    ] = CheckerName.plugin,
+    time_limit: Annotated[float, typer.Option(help="For the planner alone, in seconds.")] = 10.0,
+    anytime: Annotated[
+        bool, typer.Option("--anytime", help="Improve the path until the time limit.")
+    ] = False,
+    seed: Annotated[int | None, typer.Option(help="Make the run repeatable.")] = None,
+    simplify: Annotated[bool, typer.Option(help="Shorten the path afterwards.")] = True,
+    output: Annotated[
+        Path | None, typer.Option(metavar="FILE.json", help="Write the result.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE.csv", help="Write the interpolated path.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="FILE.html", help="Write a page with the moving robot.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="planner.KEY=VALUE", help="A parameter of the planner; repeatable."
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")
+    ] = False,
+) -> None:
+    """Plan a path and certify it.
+
+    [dim]Examples:[/dim]
+
+    ellipsoid-planning plan rabbit-2d-open
+
+    ellipsoid-planning plan rabbit-3d-open --seed 1 --output path.json --html path.html
+
+    ellipsoid-planning plan my.yaml --planner RRTConnect --set planner.range=5 --time-limit 30
+    """
+    check_outputs(output=output, csv=csv, html=html)
+    parameters = planner_parameters(settings or [])
+    problem = _checked_scenario(scenario, planner, checker.value, parameters)
+    from planners import solve
+
+    with working(f"Planning {problem.name}, for {time_limit:g} s at most"):
+        result = solve.plan(
+            problem,
+            planner=planner,
+            checker=checker.value,
+            time_limit=time_limit,
+            seed=seed,
+            simplify=simplify,
+            anytime=anytime,
+            parameters=parameters,
+        )
+    if result.status in ("invalid_start", "invalid_goal"):
+        say(f"Error: the {result.status.removeprefix('invalid_')} cannot be proved free")
+        raise typer.Exit(BAD_INPUT)
+    _print(result, json)
+    _write(result, output, csv, html)
+    raise typer.Exit(SOLVED if result.solved else NO_PATH)
+
+
+def _checked_scenario(
+    name: str, planner: str | None, checker: str, parameters: dict[str, Any]
+) -> Scenario:
+    """Load the scenario and check all that can be wrong, what is quick to check first."""
+    from ellipsoid_planning.scenario import load_scenario
+    from ellipsoid_planning.scenario_checks import check_endpoints
+
+    scenario = load_scenario(name)
+    _check_planner(scenario, planner, checker, parameters)
+    with working_with_kernels(f"Checking start and goal of {scenario.name}"):
+        check_endpoints(scenario)
+    return scenario
+
+
+def _check_planner(
+    scenario: Scenario, planner: str | None, checker: str, parameters: dict[str, Any]
+) -> None:
+    """Refuse what `solve.plan` would refuse, before the kernels are compiled."""
+    from ellipsoid_planning.errors import PlannerError
+    from planners.registry import checked_parameters, find_planner
+
+    own = dict(scenario.planner)
+    own_name = own.pop("name", DEFAULT_PLANNER)
+    entry = find_planner(own_name if planner is None else planner)
+    if entry.needs_plugin and checker != CheckerName.plugin.value:
+        raise PlannerError(
+            f"{entry.name} works with the plug-in checker only; leave out --checker {checker}, "
+            "or choose an OMPL planner with --planner"
+        )
+    checked_parameters(entry, {**(own if entry.name == own_name else {}), **parameters})
+
+
+def _print(result: PlanResult, as_json: bool) -> None:
+    if as_json:
+        sys.stdout.write(result.to_json())
+        sys.stdout.flush()
+        return
+    from planners.cli.tables import result_table
+
+    result_console().print(result_table(result))
+
+
+def _write(result: PlanResult, output: Path | None, csv: Path | None, html: Path | None) -> None:
+    if output is not None:
+        result.save(output)
+        say(f"Wrote {output}")
+    if csv is not None and result.solved:
+        write_csv(result, csv)
+        say(f"Wrote {csv}")
+    elif csv is not None:
+        say(f"No path, so {csv} was not written.")
+    if html is not None:
+        from planners.cli.pages import scene_page
+        from planners.view.meshcat_page import write_page
+
+        with working("Drawing the page"):
+            write_page(scene_page(result.scenario, result), html)
+        say(f"Wrote {html}")

@@ -1,0 +1,53 @@
+"""Short tables for people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich.markup import escape
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.result import PathResult, PlanResult
+
+COLOURS = {"solved": "green", "timeout": "yellow", "exhausted": "yellow"}
+
+
+def result_table(result: PlanResult) -> Table:
+    """Status, times, path and the planner's own counts of one result."""
+    table = Table(title=escape(result.scenario.name), show_header=False, title_justify="left")
+    table.add_column(style="bold")
+    table.add_column(justify="right", overflow="fold")
+    colour = COLOURS.get(result.status, "red")
+    table.add_row("status", f"[{colour}]{result.status}[/{colour}]")
+    table.add_row("planner", escape(result.planner))
+    if result.seed is not None:
+        table.add_row("seed", str(result.seed))
+    for name, seconds in result.time.items():
+        if seconds is not None:
+            table.add_row(f"{name} time", _duration(seconds))
+    if result.path is not None:
+        _add_path(table, result.path)
+    table.add_section()
+    for name, value in result.statistics.items():
+        table.add_row(escape(name.replace("_", " ")), escape(_text(name, value)))
+    return table
+
+
+def _add_path(table: Table, path: PathResult) -> None:
+    table.add_section()
+    table.add_row("states", str(len(path.configurations)))
+    table.add_row("length", f"{path.length:.6g}")
+    table.add_row("base travel", f"{path.base_travel:.6g}")
+    table.add_row("clearance at least", f"{path.min_clearance:.6g}")
+    table.add_row("certified", "[green]yes[/green]" if path.certified else "[red]no[/red]")
+
+
+def _duration(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.3f} s"
+
+
+def _text(name: str, value: Any) -> str:
+    if name.endswith("_time") and isinstance(value, float):
+        return _duration(value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

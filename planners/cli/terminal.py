@@ -1,0 +1,51 @@
+"""What the user sees besides results: messages and progress, all on stderr."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def say(message: str) -> None:
+    """Write a line to stderr, neither wrapped nor coloured, so that it can be searched for."""
+    sys.stderr.write(f"{message}\n")
+    sys.stderr.flush()
+
+
+def result_console() -> Console:
+    """A rich console on stdout, for the tables of results."""
+    from rich.console import Console
+
+    return Console()
+
+
+@contextmanager
+def working(message: str) -> Iterator[None]:
+    """Tell on stderr that something goes on inside the block.
+
+    A terminal shows a spinner that vanishes; anything else gets the message as a line.
+    """
+    if not sys.stderr.isatty():
+        say(f"{message} ...")
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(message):
+        yield
+
+
+@contextmanager
+def working_with_kernels(message: str) -> Iterator[None]:
+    """As `working`, preceded by a word of explanation when kernels must be compiled first."""
+    from ellipsoid_planning.kernels.compile import is_compiled
+
+    if not is_compiled():
+        say("Compiling the kernels for this machine; this happens once and takes about 20 s.")
+    with working(message):
+        yield

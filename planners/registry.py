@@ -74,7 +74,13 @@ class BoundPlanner:
 
 @dataclass(frozen=True)
 class OwnPlanner:
-    """A planner of ours: a class whose parameters are the attributes listed in ``PARAMETERS``.
+    """A planner of ours, a subclass of `ob.Planner` with these members.
+
+    ``PARAMETERS`` maps the names of its parameters, which are plain attributes, to their types.
+    Optional are the method ``check_parameters()``, which raises PlannerError, the method
+    ``warm_up()``, which compiles what a solve needs, the mapping ``statistics``, whose entries
+    ``build_time`` and ``search_time`` go to a result's times, and ``error``, the traceback of an
+    exception that ended the last solve with CRASH.
 
     Attributes:
         name: the class.
@@ -96,9 +102,11 @@ class OwnPlanner:
 
     def allocate(self, si: ob.SpaceInformation, values: Mapping[str, Any]) -> ob.Planner:
         """A new planner with ``values`` set; they must have gone through `checked_parameters`."""
-        planner: ob.Planner = self.load()(si)
+        planner: Any = self.load()(si)
         for name, value in values.items():
-            _set(self.name, name, value, lambda v, n=name: setattr(planner, n, v))
+            setattr(planner, name, value)
+        if hasattr(planner, "check_parameters"):
+            planner.check_parameters()
         return planner
 
 
@@ -222,19 +230,17 @@ def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[s
 
 
 def _converted(where: str, value: Any, kind: Any) -> Any:
-    if kind is float and _is_number(value):
-        return float(value)
-    if kind is int and _is_number(value) and float(value).is_integer():
-        return int(value)
-    if kind not in (int, float) and isinstance(value, kind):
-        return value
     kinds = kind if isinstance(kind, tuple) else (kind,)
+    if type(value) not in (int, float):
+        if type(value) in kinds:
+            return value
+    elif math.isfinite(value):
+        if int in kinds and float(value).is_integer():
+            return int(value)
+        if float in kinds:
+            return float(value)
     expected = " or ".join("None" if k is type(None) else k.__name__ for k in kinds)
     raise PlannerError(f"{where}: expected {expected}, got {value!r}")
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _set(planner: str, name: str, value: Any, setter: Any) -> None:

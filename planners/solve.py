@@ -189,7 +189,7 @@ def _solved(request: _Request, setup: og.SimpleSetup, planner: ob.Planner) -> _R
     if interruption.requested:
         raise KeyboardInterrupt
     if status not in _STATUS_NAMES:
-        raise PlannerError(f"{request.entry.name} ended with status {status.name}")
+        raise _failure(request.entry.name, status.name, getattr(planner, "error", None))
     name = _STATUS_NAMES[status]
     if name == "timeout" and gave_up:
         name = "exhausted"
@@ -204,6 +204,14 @@ def _solved(request: _Request, setup: og.SimpleSetup, planner: ob.Planner) -> _R
         found = _simplified(request, setup.getSpaceInformation(), found)
         statistics["simplification_time"] = time.perf_counter() - began
     return _Run(name, seconds, found, statistics)
+
+
+def _failure(planner: str, status: str, traceback: str | None) -> PlannerError:
+    if traceback is None:
+        return PlannerError(f"{planner} ended with status {status}")
+    error = PlannerError(f"{planner} failed: {traceback.strip().splitlines()[-1]}")
+    error.__cause__ = RuntimeError(traceback)
+    return error
 
 
 def _condition(request: _Request, setup: og.SimpleSetup) -> ob.PlannerTerminationCondition:

@@ -5,7 +5,13 @@ from ompl import geometric as og
 
 from ellipsoid_planning.errors import PlannerError
 from planners.bindings import ompl_output
-from planners.registry import BoundPlanner, checked_parameters, find_planner, planner_names
+from planners.registry import (
+    BoundPlanner,
+    OwnPlanner,
+    checked_parameters,
+    find_planner,
+    planner_names,
+)
 from tests.planners.planner_scenes import scenario_of, space_information
 
 BOUND = [name for name in planner_names() if isinstance(find_planner(name), BoundPlanner)]
@@ -106,3 +112,35 @@ def test_a_value_that_ompl_refuses_is_a_planner_error():
         entry.allocate(
             space_information(scenario_of("planar").cspace()), {"radius_multiplier": -1.0}
         )
+
+
+OPTIONAL_INTEGER = (int, type(None))
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "taken"),
+    [
+        (OPTIONAL_INTEGER, None, None),
+        (OPTIONAL_INTEGER, 4.0, 4),
+        (float, 3, 3.0),
+        ((float, type(None)), 0.5, 0.5),
+        (bool, True, True),
+        (str, "text", "text"),
+    ],
+)
+def test_values_of_our_own_planners_may_be_optional(kind, given, taken, monkeypatch):
+    entry = OwnPlanner("Fake", "nowhere")
+    monkeypatch.setattr(OwnPlanner, "parameter_kinds", lambda _: {"value": kind})
+    result = checked_parameters(entry, {"value": given})["value"]
+    assert result == taken
+    assert type(result) is type(taken)
+
+
+@pytest.mark.parametrize(
+    ("kind", "given"),
+    [(OPTIONAL_INTEGER, True), (OPTIONAL_INTEGER, 4.5), (bool, 1), (str, 1), (float, None)],
+)
+def test_wrong_types_for_our_own_planners_are_refused(kind, given, monkeypatch):
+    monkeypatch.setattr(OwnPlanner, "parameter_kinds", lambda _: {"value": kind})
+    with pytest.raises(PlannerError, match=r"Fake\.value: expected"):
+        checked_parameters(OwnPlanner("Fake", "nowhere"), {"value": given})

@@ -9,6 +9,7 @@ from rich.table import Table
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PathResult, PlanResult
+    from planners.verify.report import VerificationReport
 
 COLOURS = {"solved": "green", "timeout": "yellow", "exhausted": "yellow"}
 
@@ -51,3 +52,22 @@ def _text(name: str, value: Any) -> str:
     if name.endswith("_time") and isinstance(value, float):
         return _duration(value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def report_table(report: VerificationReport) -> Table:
+    """Every check of a verification, and its numbers."""
+    table = Table(show_header=False)
+    table.add_column(style="bold")
+    table.add_column()
+    table.add_column(overflow="fold")
+    for check in report.checks:
+        verdict = "[green]passed[/green]" if check.passed else "[red]FAILED[/red]"
+        table.add_row(escape(check.name), verdict, escape(check.detail))
+    table.add_section()
+    table.add_row("configurations", "", str(report.samples))
+    table.add_row("sampled clearance", "", f"{report.sampled_clearance:.9g}")
+    table.add_row("resolved", "", f"{100.0 * report.resolved:.4g} % of the path")
+    table.add_row("tested by FCL", "", str(report.fcl_samples))
+    verdict = "[green]verified[/green]" if report.passed else "[red]NOT VERIFIED[/red]"
+    table.add_row("verdict", "", verdict)
+    return table

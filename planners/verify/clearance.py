@@ -1,0 +1,158 @@
+"""The clearance of many configurations: bounding spheres first, then exact distances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.scenario import Scenario
+from planners.verify import containment, separation
+from planners.verify.motion import placements
+
+Array = NDArray[np.float64]
+
+_LARGEST_BATCH = 20000
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """A part that certainly meets an obstacle or leaves an arena.
+
+    Attributes:
+        kind: "obstacle" or "arena".
+        part, body: names.
+        depth: about how deep.
+        row: of the configuration.
+    """
+
+    kind: str
+    part: str
+    body: str
+    depth: float
+    row: int
+
+
+@dataclass(frozen=True, eq=False)
+class Clearances:
+    """Of k configurations.
+
+    Attributes:
+        lower: (k,), bounds of the distance to obstacles and arena boundaries from below.
+        upper: (k,), from above; infinite where only `lower` was needed.
+        meetings: every contact that is certain.
+    """
+
+    lower: Array
+    upper: Array
+    meetings: tuple[Meeting, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Bodies:
+    centres: Array
+    matrices: Array
+    radii: Array
+    names: tuple[str, ...]
+
+
+def _bodies(ellipsoids: tuple[Ellipsoid, ...], dimension: int) -> _Bodies:
+    return _Bodies(
+        np.array([body.centre for body in ellipsoids]).reshape(-1, dimension),
+        np.array([body.matrix for body in ellipsoids]).reshape(-1, dimension, dimension),
+        np.array([np.max(body.semi_axes) for body in ellipsoids]),
+        tuple(body.name for body in ellipsoids),
+    )
+
+
+class ClearanceTester:
+    """Distances of a scenario's robot to everything around it."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        """Take the bodies out of ``scenario``."""
+        self._robot = scenario.robot
+        n = scenario.dimension
+        self._parts = _bodies(scenario.robot.parts, n)
+        self._obstacles = _bodies(scenario.world.obstacles, n)
+        self._arenas = _bodies(scenario.world.arenas, n)
+
+    def test(self, configurations: Array, needed: Array) -> Clearances:
+        """The clearances of configurations (k, d), exact where they are below ``needed`` (k,)."""
+        lower = np.full(len(configurations), np.inf)
+        upper = np.full(len(configurations), np.inf)
+        meetings: list[Meeting] = []
+        positions, rotations = placements(self._robot, configurations)
+        for part, name in enumerate(self._parts.names):
+            centres = positions + rotations @ self._parts.centres[part]
+            matrices = rotations @ self._parts.matrices[part]
+            for rows, low, high, found in (
+                self._obstacle_distances(part, centres, matrices, needed, lower),
+                self._arena_rooms(centres, matrices, needed, lower),
+            ):
+                np.minimum.at(lower, rows, low)
+                np.minimum.at(upper, rows, high)
+                meetings += [Meeting(k, name, body, depth, row) for k, body, depth, row in found]
+        return Clearances(lower, upper, tuple(meetings))
+
+    def _obstacle_distances(
+        self, part: int, centres: Array, matrices: Array, needed: Array, lower: Array
+    ) -> tuple[NDArray[np.intp], Array, Array, list[tuple[str, str, float, int]]]:
+        """Rows, lower and upper bounds of the close pairs; `lower` takes the others' bounds."""
+        obstacles = self._obstacles
+        if not obstacles.names:
+            return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), []
+        away = np.linalg.norm(obstacles.centres - centres[:, None], axis=2)
+        spheres = away - obstacles.radii - self._parts.radii[part]
+        close = spheres <= needed[:, None]
+        np.minimum(lower, np.min(np.where(close, np.inf, spheres), axis=1), out=lower)
+        rows, others = np.nonzero(close)
+        low, high = np.zeros(len(rows)), np.zeros(len(rows))
+        meet = np.zeros(len(rows), dtype=bool)
+        for i in range(0, len(rows), _LARGEST_BATCH):
+            batch = slice(i, i + _LARGEST_BATCH)
+            row, other = rows[batch], others[batch]
+            pair = matrices[row], obstacles.matrices[other], obstacles.centres[other] - centres[row]
+            low[batch], high[batch], meet[batch] = _pair_distances(*pair, needed[row])
+        found = [
+            ("obstacle", obstacles.names[others[i]], float(-low[i]), int(rows[i]))
+            for i in np.flatnonzero(meet)
+        ]
+        return rows, low, high, found
+
+    def _arena_rooms(
+        self, centres: Array, matrices: Array, needed: Array, lower: Array
+    ) -> tuple[NDArray[np.intp], Array, Array, list[tuple[str, str, float, int]]]:
+        """As `_obstacle_distances`, for the arenas."""
+        all_rows, rooms, found = [np.zeros(0, dtype=np.intp)], [np.zeros(0)], []
+        arenas = self._arenas
+        for name, centre, matrix in zip(arenas.names, arenas.centres, arenas.matrices, strict=True):
+            around = np.broadcast_to(matrix, matrices.shape)
+            least = containment.room_at_least(around, matrices, centres - centre)
+            close = least <= needed
+            np.minimum(lower, np.where(close, np.inf, least), out=lower)
+            rows = np.flatnonzero(close)
+            room = containment.room(around[rows], matrices[rows], centres[rows] - centre)
+            doubt = 64.0 * np.finfo(float).eps * float(np.linalg.norm(matrix))
+            found += [
+                ("arena", name, float(-room[i]), int(rows[i]))
+                for i in np.flatnonzero(room < -doubt)
+            ]
+            all_rows.append(rows)
+            rooms.append(room)
+        room = np.concatenate(rooms)
+        return np.concatenate(all_rows), room, room, found
+
+
+def _pair_distances(
+    first: Array, second: Array, offset: Array, needed: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Lower and upper bounds of distances, exact below ``needed``, and who certainly meets."""
+    low, high = separation.cheap_bounds(first, second, offset)
+    meet = np.zeros(len(low), dtype=bool)
+    near = np.flatnonzero(low <= needed)
+    if len(near):
+        exact = separation.distances(first[near], second[near], offset[near])
+        low[near], high[near], meet[near] = exact.lower, exact.upper, exact.meet
+    return low, high, meet

@@ -1,0 +1,52 @@
+"""What a verification found, in words and numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Check:
+    """One question about a path.
+
+    Attributes:
+        name: what was checked.
+        passed: the answer.
+        detail: the numbers behind it.
+    """
+
+    name: str
+    passed: bool
+    detail: str
+
+
+@dataclass(frozen=True)
+class VerificationReport:
+    """The outcome of a verification.
+
+    Attributes:
+        checks: every question that was asked, in order.
+        samples: how many configurations were tested.
+        sampled_clearance: the smallest distance to an obstacle or an arena's boundary at any of
+            them; never below the path's true clearance but by rounding. Not positive in
+            contact, infinite without bodies.
+        resolved: the fraction of the path, by length, where the samples lie so dense that no
+            contact can hide between them.
+        fcl_samples: how many configurations FCL tested as well.
+    """
+
+    checks: tuple[Check, ...]
+    samples: int = 0
+    sampled_clearance: float = float("nan")
+    resolved: float = 0.0
+    fcl_samples: int = 0
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+    @property
+    def failures(self) -> tuple[Check, ...]:
+        """The checks that did not pass."""
+        return tuple(check for check in self.checks if not check.passed)

@@ -1,0 +1,105 @@
+"""Asks of a result everything that a path must keep and everything that the result states."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.result import PathResult, PlanResult
+from ellipsoid_planning.scenario import Scenario
+from planners.verify.fcl_agreement import fcl_contacts
+from planners.verify.motion import lengths
+from planners.verify.report import Check, VerificationReport
+from planners.verify.sampling import SampledPath, sample_path
+
+Array = NDArray[np.float64]
+
+SAME_STATE = 1e-9
+"""How far states may differ that should be the same, as a fraction of the scene's size."""
+
+SAME_LENGTH = 1e-6
+ROUNDING = 1e-12
+
+
+def verify_result(result: PlanResult) -> VerificationReport:
+    """Check a result's path against its scenario, independently of the kernels.
+
+    The path is sampled as `sampling.sample_path` describes. A contact, a lost clearance or an
+    overstated one fails only when it is certain beyond rounding; so does everything else.
+    """
+    if result.path is None:
+        missing = Check("path", passed=False, detail=f"there is none, status {result.status!r}")
+        return VerificationReport((missing,))
+    scenario, path = result.scenario, result.path.configurations
+    size = _size(scenario)
+    stated = [*_state_checks(scenario, path, size), _length_check(scenario, result.path)]
+    sampled = sample_path(scenario, path)
+    tested, contacts = fcl_contacts(scenario, sampled.configurations, sampled.lower, size)
+    agreement = Check("FCL", contacts == 0, f"sees {contacts} contacts in {tested} configurations")
+    bodies = _body_checks(scenario, result.path, sampled, size)
+    return VerificationReport(
+        (*stated, *bodies, agreement),
+        samples=len(sampled.configurations),
+        sampled_clearance=sampled.smallest,
+        resolved=sampled.resolved,
+        fcl_samples=tested,
+    )
+
+
+def _size(scenario: Scenario) -> float:
+    """The length that tolerances refer to: the longest extent of anything in the scene."""
+    bodies = (*scenario.world.arenas, *scenario.world.obstacles)
+    reaches = [float(np.max(np.abs(body.centre)) + np.max(body.semi_axes)) for body in bodies]
+    return max([float(np.max(scenario.world.high - scenario.world.low)), *reaches])
+
+
+def _state_checks(scenario: Scenario, path: Array, size: float) -> Iterator[Check]:
+    for which, state, wanted in (
+        ("start", path[0], scenario.start),
+        ("goal", path[-1], scenario.goal),
+    ):
+        apart = _apart(scenario, state, wanted)
+        yield Check(which, apart <= SAME_STATE * size, f"{apart:.3g} from the scenario's")
+    if scenario.robot.configuration_size == 7:
+        error = float(np.max(np.abs(np.linalg.norm(path[:, 3:], axis=1) - 1.0)))
+        yield Check("quaternions", error <= SAME_STATE, f"of unit length within {error:.3g}")
+    base = path[:, : scenario.dimension]
+    beyond = np.maximum(scenario.world.low - base, base - scenario.world.high)
+    worst = float(np.max(beyond))
+    passed = worst <= ROUNDING * size
+    yield Check("bounds", passed, f"beyond them by {worst:.6g}" if not passed else "kept")
+
+
+def _apart(scenario: Scenario, one: Array, other: Array) -> float:
+    """How far apart two configurations are, with turns in radians."""
+    return lengths(scenario.robot, np.array([one, other]))[0]
+
+
+def _length_check(scenario: Scenario, path: PathResult) -> Check:
+    length, travel = lengths(scenario.robot, path.configurations)
+    error = max(abs(path.length - length), abs(path.base_travel - travel))
+    detail = f"stated {path.length:.9g}, measured {length:.9g}"
+    return Check("length", error <= SAME_LENGTH * (1.0 + length), detail)
+
+
+def _body_checks(
+    scenario: Scenario, path: PathResult, sampled: SampledPath, size: float
+) -> Iterator[Check]:
+    place = f"in motion {sampled.place[0]} at {sampled.place[1]:.6g}"
+    worst = sampled.worst
+    for kind, verb in (("obstacle", "hits"), ("arena", "leaves")):
+        passed = worst is None or worst.kind != kind
+        detail = "none is hit" if kind == "obstacle" else "the robot stays inside"
+        if worst is not None and not passed:
+            about = f"{kind} {worst.body!r}, about {worst.depth:.3g} deep"
+            detail = f"part {worst.part!r} {verb} {about}, {place}"
+        yield Check(f"{kind}s", passed, detail)
+    smallest, doubt = sampled.smallest, ROUNDING * size
+    kept = smallest >= scenario.clearance - doubt
+    detail = f"{smallest:.9g} {place}, required {scenario.clearance:g}"
+    yield Check("clearance", kept, detail)
+    honest = path.min_clearance <= smallest + doubt
+    detail = f"stated at least {path.min_clearance:.9g}, sampled {smallest:.9g}"
+    yield Check("stated clearance", honest, detail)

@@ -244,9 +244,10 @@ def graph_of_planner(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The tree or roadmap of a bound planner: configurations (m, d) and edges (k, 2).
 
-    Each edge appears in the direction in which OMPL stores it. Call it before `clear`. Planners
-    written in Python are refused, because an overridden `getPlannerData` aborts the process when
-    C++ calls it. After a call on a BITstar its space information is never freed.
+    Each edge appears as OMPL stores it: in one direction, with PRM and PRMstar in both. Call it
+    before `clear`. Planners written in Python are refused, because an overridden `getPlannerData`
+    aborts the process when C++ calls it. After a call on a BITstar its space information is
+    never freed.
 
     Raises:
         PlannerError: ``planner`` is a subclass written in Python.
@@ -258,12 +259,14 @@ def graph_of_planner(
 
 
 def graph_size_of_planner(planner: ob.Planner) -> tuple[int, int] | None:
-    """Numbers of vertices and edges of a bound planner.
+    """Numbers of vertices and edges of a bound planner; an edge counts once.
 
     None where asking would leak (BITstar), or the planner keeps its graph to itself (AORRTC).
     """
     if isinstance(planner, og.BITstar | og.AORRTC):
         return None
+    if isinstance(planner, og.PRM):  # copying its graph can take longer than the search
+        return int(planner.milestoneCount()), int(planner.edgeCount())
     data = _planner_data(planner)
     return int(data.numVertices()), int(data.numEdges())
 

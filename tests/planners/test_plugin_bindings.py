@@ -165,7 +165,8 @@ def read(name):
     del setup, planner
     gc.collect()
     if size is not None:
-        assert size == (len(configurations), len(edges)) and len(configurations) > 1
+        stored = len(edges) // 2 if name.startswith("PRM") else len(edges)
+        assert size == (len(configurations), stored) and len(configurations) > 1
     assert np.isfinite(configurations).all() and (edges < len(configurations)).all()
     print(name, configurations.shape[1], edges.shape[1], flush=True)
 

@@ -55,6 +55,22 @@ def is_compiled() -> bool:
     return any(CACHE_FOLDER.rglob("*.nbc"))
 
 
+def _without_literals(dispatcher: Any) -> Any:
+    """Make ``dispatcher`` compile one version for an argument, whether constant or not.
+
+    Numba compiles a kernel anew for every constant integer or bool that another kernel passes,
+    which more than doubles the time of the first run; the versions would not be any faster.
+    """
+    template = dispatcher.get_call_template
+
+    def get_call_template(args: Any, kws: Any) -> Any:
+        plain = tuple(numba.types.unliteral(kind) for kind in args)
+        return template(plain, {name: numba.types.unliteral(kind) for name, kind in kws.items()})
+
+    dispatcher.get_call_template = get_call_template
+    return dispatcher
+
+
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile ``function`` lazily with numba, cached in :data:`CACHE_FOLDER`.
 
@@ -66,6 +82,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+        compiled = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+        return _without_literals(compiled)
     finally:
         numba.config.CACHE_DIR = previous

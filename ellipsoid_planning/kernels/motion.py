@@ -392,20 +392,23 @@ def motion_clearance(scene, first, last, samples, steps):
         return -1.0
     low = scene[CLEARANCE]
     high = 2.0 * scene[SCALE]
-    # Halves of slerps suffice here: the samples only bound the search.
+    move = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
+    tx, ty, tz, tw = product(
+        last[3], last[4], last[5], last[6], -first[3], -first[4], -first[5], first[6]
+    )
+    if tw < 0.0:
+        tx, ty, tz, tw = -tx, -ty, -tz, -tw
+    sine = norm(tx, ty, tz)
+    half = math.atan2(sine, tw)
     for k in range(samples):
         s = k / (samples - 1.0)
-        dot = 0.0
-        for m in range(3, 7):
-            dot += first[m] * last[m]
-        sign = -1.0 if dot < 0.0 else 1.0
-        p = np.empty(7)
-        for m in range(3):
-            p[m] = (1.0 - s) * first[m] + s * last[m]
-        for m in range(3, 7):
-            p[m] = (1.0 - s) * first[m] + s * sign * last[m]
-        if p[3] * p[3] + p[4] * p[4] + p[5] * p[5] + p[6] * p[6] > 1e-6:
-            high = min(high, clearance_of(scene, p[0], p[1], p[2], p[3], p[4], p[5], p[6]))
+        turn = math.sin(s * half) / sine if sine > 0.0 else 0.0
+        qx, qy, qz, qw = product(
+            turn * tx, turn * ty, turn * tz, math.cos(s * half),
+            first[3], first[4], first[5], first[6],
+        )  # fmt: skip
+        x, y, z = first[0] + s * move[0], first[1] + s * move[1], first[2] + s * move[2]
+        high = min(high, clearance_of(scene, x, y, z, qx, qy, qz, qw))
     if high <= low:
         return low
     trial = low + 0.999 * (high - low)

@@ -62,7 +62,7 @@ NODE_REALS = 5
 COLUMN_STRIDE = 1 << 20
 # A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
 LINE_BASE = 128
-_NODE_BITS = 31
+NODE_BITS = 31
 
 
 class Roadmap(NamedTuple):
@@ -111,46 +111,46 @@ class Roadmap(NamedTuple):
 
 
 @kernel
-def _angle(rm, a, b):
+def _angle(orientations, a, b):
     """Angle between the orientations of two layers [rad]."""
-    p, q = rm.orientations[a], rm.orientations[b]
+    p, q = orientations[a], orientations[b]
     dot = abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
     return 2.0 * math.acos(min(dot, 1.0))
 
 
 @kernel
-def _heuristic(rm, layer, column, swept, axis, goals, weight):
+def _heuristic(orientations, columns, layer, column, swept, axis, goals, weight):
     """Smallest distance to a goal row (layer, x, y, z)."""
     best = math.inf
     for k in range(goals.shape[0]):
         total = 0.0
         for m in range(3):
-            value = swept if m == axis else rm.columns[column, m]
+            value = swept if m == axis else columns[column, m]
             total += (value - goals[k, 1 + m]) ** 2
-        distance = math.sqrt(total) + weight * _angle(rm, layer, int(goals[k, 0]))
+        distance = math.sqrt(total) + weight * _angle(orientations, layer, int(goals[k, 0]))
         best = min(best, distance)
     return best
 
 
 @kernel
-def _step(rm, a, za, b, zb, axis, weight):
+def _step(orientations, columns, nodes, a, za, b, zb, axis, weight):
     """Length of the edge from node ``a`` at ``za`` to node ``b`` at ``zb``."""
-    ca, cb = rm.node_integers[a, NODE_COLUMN], rm.node_integers[b, NODE_COLUMN]
+    ca, cb = nodes[a, NODE_COLUMN], nodes[b, NODE_COLUMN]
     total = (za - zb) ** 2
     for m in range(3):
         if m != axis:
-            total += (rm.columns[ca, m] - rm.columns[cb, m]) ** 2
-    la, lb = rm.node_integers[a, NODE_LAYER], rm.node_integers[b, NODE_LAYER]
-    return math.sqrt(total) + (weight * _angle(rm, la, lb) if la != lb else 0.0)
+            total += (columns[ca, m] - columns[cb, m]) ** 2
+    la, lb = nodes[a, NODE_LAYER], nodes[b, NODE_LAYER]
+    return math.sqrt(total) + (weight * _angle(orientations, la, lb) if la != lb else 0.0)
 
 
 @kernel
-def _pose(rm, node, swept, axis, out):
-    layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+def _pose(orientations, columns, nodes, node, swept, axis, out):
+    layer, column = nodes[node, NODE_LAYER], nodes[node, NODE_COLUMN]
     for m in range(3):
-        out[m] = swept if m == axis else rm.columns[column, m]
+        out[m] = swept if m == axis else columns[column, m]
     for m in range(4):
-        out[3 + m] = rm.orientations[layer, m]
+        out[3 + m] = orientations[layer, m]
 
 
 @kernel
@@ -210,10 +210,10 @@ def node_at(scene, rm, layer, column, swept, axis, intervals):
 
 
 @kernel
-def _crossing(rm, a, b, entry, choice):
+def _crossing(nodes, a, b, entry, choice):
     """Candidate ``choice`` of where an edge leaves ``a`` and enters ``b``: (z_a, z_b, exists)."""
-    low_a, high_a = rm.node_reals[a, NODE_LOW], rm.node_reals[a, NODE_HIGH]
-    low_b, high_b = rm.node_reals[b, NODE_LOW], rm.node_reals[b, NODE_HIGH]
+    low_a, high_a = nodes[a, NODE_LOW], nodes[a, NODE_HIGH]
+    low_b, high_b = nodes[b, NODE_LOW], nodes[b, NODE_HIGH]
     low, high = max(low_a, low_b), min(high_a, high_b)
     if choice == 3:
         return 0.5 * (low_a + high_a), 0.5 * (low_b + high_b), True
@@ -232,7 +232,7 @@ def _crossing(rm, a, b, entry, choice):
 @kernel
 def _prove_edge(scene, rm, a, b, entry, axis, ends):
     """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
-    key = (min(a, b) << _NODE_BITS) | max(a, b)
+    key = (min(a, b) << NODE_BITS) | max(a, b)
     known = lookup(rm.edges, key)
     if known != EMPTY:
         row = rm.edge_reals[known]
@@ -241,11 +241,11 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
         return row[2], row[1], row[0] > 0.0
     za, zb, proved = 0.0, 0.0, False
     for choice in range(4):
-        za, zb, exists = _crossing(rm, a, b, entry, choice)
+        za, zb, exists = _crossing(rm.node_reals, a, b, entry, choice)
         if not exists:
             continue
-        _pose(rm, a, za, axis, ends[0])
-        _pose(rm, b, zb, axis, ends[1])
+        _pose(rm.orientations, rm.columns, rm.node_integers, a, za, axis, ends[0])
+        _pose(rm.orientations, rm.columns, rm.node_integers, b, zb, axis, ends[1])
         proved = (
             prove_motion(
                 scene,
@@ -271,13 +271,23 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
 
 @kernel
 def _open(rm, priority, cost, leave, target, parent, line):
-    entry = rm.counters[ENTRIES]
-    rm.counters[ENTRIES] += 1
-    rm.entry_reals[entry, 0], rm.entry_reals[entry, 1] = cost, leave
-    rm.entry_integers[entry, 0] = target
-    rm.entry_integers[entry, 1] = parent
-    rm.entry_integers[entry, 2] = line
-    rm.counters[OPEN] = push(rm.heap, rm.heap_items, rm.counters[OPEN], priority, entry)
+    _add_entry(
+        rm.counters, rm.heap, rm.heap_items, rm.entry_reals, rm.entry_integers,
+        priority, cost, leave, target, parent, line,
+    )
+
+
+@kernel
+def _add_entry(
+    counters, heap, items, reals, integers, priority, cost, leave, target, parent, line
+):
+    entry = counters[ENTRIES]
+    counters[ENTRIES] += 1
+    reals[entry, 0], reals[entry, 1] = cost, leave
+    integers[entry, 0] = target
+    integers[entry, 1] = parent
+    integers[entry, 2] = line
+    counters[OPEN] = push(heap, items, counters[OPEN], priority, entry)
 
 
 @kernel
@@ -291,9 +301,9 @@ def _promise(rm, node, layer, column, axis, goals, inflation, weight):
             step += (rm.columns[own_column, m] - rm.columns[column, m]) ** 2
     step = math.sqrt(step)
     if layer != own_layer:
-        step += weight * _angle(rm, own_layer, layer)
+        step += weight * _angle(rm.orientations, own_layer, layer)
     cost = rm.node_reals[node, NODE_COST] + step
-    ahead = _heuristic(rm, layer, column, entry, axis, goals, weight)
+    ahead = _heuristic(rm.orientations, rm.columns, layer, column, entry, axis, goals, weight)
     line = layer * COLUMN_STRIDE + column
     _open(rm, cost + inflation * ahead, cost, entry, -1, node, line)
 
@@ -307,14 +317,16 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
     for node in range(first, first + count):
         if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
             continue
-        za, zb, exists = _crossing(rm, parent, node, entry, 0)
+        za, zb, exists = _crossing(rm.node_reals, parent, node, entry, 0)
         if not exists:
             if layer != rm.node_integers[parent, NODE_LAYER]:
                 continue
-            za, zb, exists = _crossing(rm, parent, node, entry, 3)
+            za, zb, exists = _crossing(rm.node_reals, parent, node, entry, 3)
         cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
-        cost += _step(rm, parent, za, node, zb, axis, weight)
-        ahead = _heuristic(rm, layer, column, zb, axis, goals, weight)
+        cost += _step(
+            rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
+        )
+        ahead = _heuristic(rm.orientations, rm.columns, layer, column, zb, axis, goals, weight)
         _open(rm, cost + inflation * ahead, cost, za, node, parent, line)
 
 
@@ -332,11 +344,11 @@ def _expand(rm, node, axis, goals, inflation, weight):
     """Promise every line next to ``node``."""
     layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
     for k in range(rm.column_neighbours.shape[1]):
-        other = rm.column_neighbours[column, k]
+        other = int(rm.column_neighbours[column, k])
         if other >= 0:
             _promise(rm, node, layer, other, axis, goals, inflation, weight)
     for k in range(rm.layer_neighbours.shape[1]):
-        other = rm.layer_neighbours[layer, k]
+        other = int(rm.layer_neighbours[layer, k])
         if other >= 0:
             _promise(rm, node, other, column, axis, goals, inflation, weight)
     rm.counters[EXPANSIONS] += 1
@@ -346,7 +358,7 @@ def _expand(rm, node, axis, goals, inflation, weight):
 def _meets_goal(scene, rm, node, axis, goals, ends):
     """The goal to which the direct motion from ``node`` is proved free, or −1."""
     entry = rm.node_reals[node, NODE_ENTRY]
-    _pose(rm, node, entry, axis, ends[0])
+    _pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
     for k in range(goals.shape[0]):
         for m in range(3):
             ends[1, m] = goals[k, 1 + m]
@@ -383,7 +395,7 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
         layer, column = int(starts[k, 0]), int(starts[k, 4])
         node = node_at(scene, rm, layer, column, swept, axis, intervals)
         if node >= 0:
-            ahead = _heuristic(rm, layer, column, swept, axis, goals, weight)
+            ahead = _heuristic(rm.orientations, rm.columns, layer, column, swept, axis, goals, weight)
             _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
     return SEARCHING if rm.counters[OPEN] > 0 else EXHAUSTED
 
@@ -434,7 +446,9 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             if not proved:
                 continue
             cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
-            cost += _step(rm, parent, za, node, zb, axis, weight)
+            cost += _step(
+            rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
+        )
             _reach(rm, node, parent, za, zb, cost)
         goal = _meets_goal(scene, rm, node, axis, goals, ends)
         if goal >= 0:
@@ -455,10 +469,10 @@ def trace(rm, last, axis, out):
     while True:
         if count + 2 > out.shape[0]:
             return 0
-        _pose(rm, node, swept, axis, out[count])
+        _pose(rm.orientations, rm.columns, rm.node_integers, node, swept, axis, out[count])
         count += 1
         if swept != rm.node_reals[node, NODE_ENTRY]:
-            _pose(rm, node, rm.node_reals[node, NODE_ENTRY], axis, out[count])
+            _pose(rm.orientations, rm.columns, rm.node_integers, node, rm.node_reals[node, NODE_ENTRY], axis, out[count])
             count += 1
         parent = rm.node_integers[node, NODE_PARENT]
         if parent < 0:

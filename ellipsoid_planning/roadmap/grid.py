@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.kernels.grid import find_column, find_layer
 from ellipsoid_planning.roadmap.orientations import nearest
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int32]
 
-# Room in the neighbour tables for the columns and layers of starts and goals.
+# Places in each row of neighbours, and rows, for the columns and layers of starts and goals.
 QUERY_ROOM = 16
+SPARE_ROWS = 64
 
 
 def swept_box(world: World) -> tuple[Array, Array]:
@@ -65,69 +68,80 @@ def _grid_neighbours(counts: list[int]) -> Indices:
 class Grid:
     """Columns and layers of one level; those of starts and goals are added as they come.
 
+    The tables have spare rows; the counts say how many are in use.
+
     Attributes:
-        columns: (C, 3), the swept coordinate 0.
-        column_neighbours: (C, D), filled up with −1.
-        orientations: quaternions of the layers (L, 4).
-        layer_neighbours: (L, K), filled up with −1.
+        columns: (≥ C, 3), the swept coordinate 0.
+        column_neighbours: (≥ C, D), filled up with −1.
+        orientations: quaternions of the layers (≥ L, 4).
+        layer_neighbours: (≥ L, K), filled up with −1.
+        column_count, layer_count: C and L.
     """
 
     def __init__(
         self, columns: Array, column_neighbours: Indices, orientations: Array, neighbours: int
     ) -> None:
-        """Join each layer to its ``neighbours`` nearest ones, both ways."""
-        self.columns = columns
-        self.column_neighbours = _with_room(column_neighbours)
-        self.orientations = orientations
+        """Join each layer to its ``neighbours`` nearest ones; of the columns that is given."""
+        self.column_count, self.layer_count = len(columns), len(orientations)
+        self.columns = _with_spare_rows(columns, 0.0)
+        self.column_neighbours = _with_spare_rows(_with_room(column_neighbours), -1)
+        self.orientations = _with_spare_rows(orientations, 0.0)
+        table = _layer_neighbours(orientations, neighbours)
+        self.layer_neighbours = _with_spare_rows(_with_room(table), -1)
         self._neighbours = neighbours
-        table = nearest(orientations, orientations, neighbours + 1)
-        own = np.arange(len(orientations), dtype=np.int32)[:, None]
-        table = np.where(table == own, np.int32(-1), table)
-        self.layer_neighbours = _with_room(table)
+        self._distances = np.empty(max(len(self.columns), len(self.orientations)))
 
     def column_of(self, position: Array, axis: int) -> int:
         """The column at ``position`` (3,), added and joined to those around it if it is new."""
+        if self.column_count == len(self.columns):
+            self.columns = _with_spare_rows(self.columns, 0.0)
+            self.column_neighbours = _with_spare_rows(self.column_neighbours, -1)
+            self._distances = np.empty(max(len(self.columns), len(self.orientations)))
         point = position.copy()
         point[axis] = 0.0
-        away = np.linalg.norm(self.columns - point, axis=1)
-        if away.min() <= 1e-12 * (1.0 + float(np.abs(point).max())):
-            return int(away.argmin())
-        new = len(self.columns)
-        around = np.argsort(away, kind="stable")[:4].astype(np.int32)
-        self.columns = np.vstack([self.columns, point])
-        self.column_neighbours = _joined(self.column_neighbours, new, around)
-        return new
+        found = find_column(
+            self.columns, self.column_neighbours, self.column_count, self._distances, *point
+        )
+        self.column_count = max(self.column_count, found + 1)
+        return int(found)
 
     def layer_of(self, orientation: Array) -> int:
         """The layer of a quaternion (4,), added and joined to its nearest if it is new."""
-        away = 1.0 - np.abs(self.orientations @ orientation)
-        exact = np.flatnonzero(away <= 1e-14)
-        for layer in exact:
-            if np.array_equal(self.orientations[layer], orientation):
-                return int(layer)
-        new = len(self.orientations)
-        around = np.argsort(away, kind="stable")[: self._neighbours].astype(np.int32)
-        self.orientations = np.vstack([self.orientations, orientation])
-        self.layer_neighbours = _joined(self.layer_neighbours, new, around)
-        return new
+        if self.layer_count == len(self.orientations):
+            self.orientations = _with_spare_rows(self.orientations, 0.0)
+            self.layer_neighbours = _with_spare_rows(self.layer_neighbours, -1)
+            self._distances = np.empty(max(len(self.columns), len(self.orientations)))
+        found = find_layer(
+            self.orientations,
+            self.layer_neighbours,
+            self.layer_count,
+            self._distances,
+            orientation,
+            self._neighbours,
+        )
+        self.layer_count = max(self.layer_count, found + 1)
+        return int(found)
+
+
+def _layer_neighbours(orientations: Array, count: int) -> Indices:
+    # The table of a well spread set serves every planner that uses the set.
+    key = (orientations.tobytes(), count)
+    if key not in _KNOWN_NEIGHBOURS:
+        table = nearest(orientations, orientations, count + 1)
+        own = np.arange(len(orientations), dtype=np.int32)[:, None]
+        _KNOWN_NEIGHBOURS.clear()
+        _KNOWN_NEIGHBOURS[key] = np.where(table == own, np.int32(-1), table)
+    return _KNOWN_NEIGHBOURS[key]
+
+
+_KNOWN_NEIGHBOURS: dict[tuple[bytes, int], Indices] = {}
 
 
 def _with_room(table: Indices) -> Indices:
     room = np.full((len(table), QUERY_ROOM), -1, dtype=np.int32)
-    return np.ascontiguousarray(np.hstack([table, room]), dtype=np.int32)
+    return np.hstack([table, room])
 
 
-def _joined(table: Indices, new: int, around: Indices) -> Indices:
-    """``table`` with a row for ``new``, joined both ways to ``around``.
-
-    Where a row is full, the newcomer takes the place of an earlier newcomer.
-    """
-    row = np.full((1, table.shape[1]), -1, dtype=np.int32)
-    kept = around[: table.shape[1]]
-    row[0, : len(kept)] = kept
-    table = np.vstack([table, row])
-    for other in kept:
-        free = np.flatnonzero(table[other] < 0)
-        place = int(free[0]) if len(free) else table.shape[1] - 1 - new % QUERY_ROOM
-        table[other, place] = new
-    return table
+def _with_spare_rows(table: NDArray[Any], value: float) -> NDArray[Any]:
+    spare = np.full((SPARE_ROWS, table.shape[1]), value, dtype=table.dtype)
+    return np.ascontiguousarray(np.vstack([table, spare]))

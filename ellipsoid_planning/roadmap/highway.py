@@ -105,6 +105,11 @@ class HighwayRoadmap:
             return Outcome(EXHAUSTED)
         return Outcome(SOLVED, configurations_from_poses(self.cspace.robot, best))
 
+    def prepare(self) -> None:
+        """Make the first level, which depends on no query; :meth:`solve` does it if need be."""
+        if not self.levels:
+            self.levels.append(self._new_level(0))
+
     def clear(self) -> None:
         """Forget everything computed so far."""
         self.levels = []
@@ -207,3 +212,19 @@ class HighwayRoadmap:
     def _length(self, path: Array) -> float:
         robot = self.cspace.robot
         return path_length(robot, configurations_from_poses(robot, path))
+
+
+def compile_kernels(cspace: CSpace) -> None:
+    """Compile everything that a query can call, so that the next one's time is its own."""
+    planner = HighwayRoadmap(cspace)
+    robot = cspace.robot
+    ends = np.zeros((2, robot.configuration_size))
+    ends[:, : robot.dimension] = [cspace.world.low, cspace.world.high]
+    if robot.rotates and robot.dimension == 3:
+        ends[:, -1] = 1.0
+    begin = cspace.poses(ends)
+    level = planner._level(0, begin[:1], begin[1:])
+    level.compile_kernels(begin)
+    path = np.repeat(begin[:1], 2, axis=0)
+    planner._is_proved(path)
+    planner._shortened(path)

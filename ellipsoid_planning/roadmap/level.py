@@ -83,6 +83,14 @@ class Level:
         changed = np.any(np.diff(path, axis=0) != 0.0, axis=1)
         return path[np.concatenate([[True], changed])]
 
+    def compile_kernels(self, ends: Array) -> None:
+        """Call every kernel of a query once, on two poses ``ends`` (2, 7), without searching."""
+        rows = self._rows(ends)
+        self.tables = grown(with_grid(self.tables, self.grid))
+        roadmap.begin(self._scene, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
+        roadmap.search(self._scene, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
+        roadmap.trace(self.tables, 0, self.axis, np.empty((0, 7)))
+
     @property
     def statistics(self) -> dict[str, int]:
         """Counts of what has been computed so far."""

@@ -1,0 +1,87 @@
+"""A roadmap as a plain graph, for drawing and export."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels.containers import EMPTY
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.roadmap.level import Level
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.roadmap.highway import HighwayRoadmap
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class RoadmapGraph:
+    """Configurations joined by proved motions.
+
+    Attributes:
+        configurations: vertices (m, d).
+        edges: pairs of vertices (k, 2); the motion along each is proved free.
+        layers: the layer of each vertex (m,), counted over all levels.
+    """
+
+    configurations: Array
+    edges: Indices
+    layers: Indices
+
+    def __post_init__(self) -> None:
+        for array in (self.configurations, self.edges, self.layers):
+            array.setflags(write=False)
+
+
+def _crossings(level: Level) -> tuple[Indices, Array]:
+    """Proved edges: nodes (k, 2) and the swept coordinate at either (k, 2)."""
+    table = level.tables.edges
+    used = table[0] != EMPTY
+    keys, rows = table[0, used], level.tables.edge_reals[table[1, used]]
+    proved = rows[:, 0] > 0.0
+    nodes = np.column_stack([keys >> roadmap.NODE_BITS, keys & ((1 << roadmap.NODE_BITS) - 1)])
+    return nodes[proved], rows[proved, 1:]
+
+
+def _level_graph(level: Level, robot: RigidRobot) -> RoadmapGraph:
+    """Vertices where edges leave and enter intervals; a node's own are joined along it."""
+    nodes, swept = _crossings(level)
+    places = np.column_stack([nodes.ravel(), swept.ravel()])
+    unique, index = np.unique(places, axis=0, return_inverse=True)
+    across = index.reshape(-1, 2)
+    same = np.flatnonzero(unique[:-1, 0] == unique[1:, 0]) if len(unique) else np.empty(0, int)
+    along = np.column_stack([same, same + 1])
+    integers = level.tables.node_integers[unique[:, 0].astype(np.int64)]
+    poses = np.empty((len(unique), 7))
+    poses[:, :3] = level.tables.columns[integers[:, roadmap.NODE_COLUMN]]
+    poses[:, level.axis] = unique[:, 1]
+    layers = integers[:, roadmap.NODE_LAYER]
+    poses[:, 3:] = level.tables.orientations[layers]
+    return RoadmapGraph(
+        configurations_from_poses(robot, poses).reshape(len(poses), robot.configuration_size),
+        np.vstack([across, along]).astype(np.int64),
+        layers.astype(np.int64),
+    )
+
+
+def explored_graph(planner: HighwayRoadmap) -> RoadmapGraph:
+    """Everything that the planner's queries have proved so far, over all levels."""
+    robot = planner.cspace.robot
+    parts = [_level_graph(level, robot) for level in planner.levels]
+    configurations = [np.empty((0, robot.configuration_size))]
+    edges, layers = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)]
+    vertices, first_layer = 0, 0
+    for part, level in zip(parts, planner.levels, strict=True):
+        configurations.append(part.configurations)
+        edges.append(part.edges + vertices)
+        layers.append(part.layers + first_layer)
+        vertices += len(part.configurations)
+        first_layer += len(level.grid.orientations)
+    return RoadmapGraph(np.vstack(configurations), np.vstack(edges), np.concatenate(layers))

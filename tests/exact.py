@@ -119,9 +119,7 @@ def _difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> Vect
     return [a - b for a, b in zip(decimals(first), decimals(second), strict=True)]
 
 
-def is_contained(
-    arena: Body, part: Body, offset: Vector | None = None, steps: int = 100
-) -> bool:
+def is_contained(arena: Body, part: Body, offset: Vector | None = None, steps: int = 100) -> bool:
     """Whether an ellipsoid lies within another, by the S-lemma or by a point that sticks out.
 
     `offset` replaces the part's centre relative to the arena's, exactly.

@@ -69,9 +69,7 @@ def placed(scene: Scene, configurations: Array) -> list[tuple[Array, Array]]:
     return [(position + turns @ part.centre, turns @ part.matrix) for part in scene.parts]
 
 
-def obstacle_gaps(
-    scene: Scene, configurations: Array, far: float = np.inf
-) -> tuple[Array, Array]:
+def obstacle_gaps(scene: Scene, configurations: Array, far: float = np.inf) -> tuple[Array, Array]:
     """Signed gaps (m, parts, obstacles) and their directions (m, parts, obstacles, n).
 
     Pairs whose bounding balls are more than `far` apart get that lower bound instead.
@@ -146,11 +144,28 @@ def _polished_rooms(
     return best[rows, k], u[rows, k]
 
 
-def clearances(scene: Scene, configurations: Array) -> Array:
-    """Distance of the robot from everything at configurations (m, d); bounds do not count."""
+def are_free(scene: Scene, configurations: Array) -> NDArray[np.bool_]:
+    """Whether the robot meets no obstacle, by the Minkowski sums' gauges alone (quick)."""
+    m, n = len(configurations), scene.dimension
+    free = np.ones(m, dtype=bool)
+    for centres, matrices in placed(scene, configurations):
+        for obstacle in scene.obstacles:
+            c = centres - obstacle.centre
+            reach = np.linalg.norm(obstacle.matrix, 2) + np.linalg.norm(matrices[0], 2)
+            near = free & (np.linalg.norm(c, axis=1) <= reach)
+            a1 = np.broadcast_to(obstacle.matrix, (int(near.sum()), n, n))
+            free[near] = oracles.combinations(c[near], a1, matrices[near], 30)[0] > 1
+    return free
+
+
+def clearances(scene: Scene, configurations: Array, far: float = np.inf) -> Array:
+    """Distance of the robot from everything at configurations (m, d); bounds do not count.
+
+    Distances of obstacles above `far` may come out as a lower bound.
+    """
     values = np.full(len(configurations), np.inf)
     if scene.obstacles:
-        values = np.minimum(values, obstacle_gaps(scene, configurations)[0].min(axis=(1, 2)))
+        values = np.minimum(values, obstacle_gaps(scene, configurations, far)[0].min(axis=(1, 2)))
     if scene.arenas:
         values = np.minimum(values, arena_rooms(scene, configurations)[0].min(axis=(1, 2)))
     return values
@@ -279,16 +294,19 @@ def pushed(scene: Scene, first: Array, second: Array, target: float, rounds: int
     arenas of a scene without obstacles.  Raises ArithmeticError when it does not settle to
     within 2e-14.
     """
-    kind = "obstacles" if scene.obstacles else "arenas"
     closest = closest_obstacle if scene.obstacles else closest_arena
     for _ in range(rounds):
         found = closest(scene, first, second)
         if abs(found.gap - target) < 2e-14:
             return scene
-        bodies = list(getattr(scene, kind))
+        bodies = list(scene.obstacles or scene.arenas)
         moved = bodies[found.body]
         # the direction points from the body to the part: moving against it widens the gap
         centre = moved.centre - (target - found.gap) * found.direction
         bodies[found.body] = Body(centre, moved.matrix)
-        scene = scene._replace(**{kind: tuple(bodies)})
+        scene = (
+            scene._replace(obstacles=tuple(bodies))
+            if scene.obstacles
+            else scene._replace(arenas=tuple(bodies))
+        )
     raise ArithmeticError("the body did not settle")

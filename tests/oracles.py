@@ -32,10 +32,10 @@ def body_of(ellipsoid: Any) -> Body:
 
 def sphere_grid(count: int, dimension: int) -> Array:
     """About `count` unit vectors (count, n), evenly spread (Fibonacci's spiral in 3-D)."""
-    k = np.arange(count)
+    k: Array = np.arange(count, dtype=np.float64)
     if dimension == 2:
-        angle = 2 * np.pi * k / count
-        return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        turn = 2 * np.pi * k / count
+        return np.stack([np.cos(turn), np.sin(turn)], axis=1)
     z = 1 - (2 * k + 1) / count
     angle = np.pi * (1 + 5**0.5) * k
     flat = np.sqrt(1 - z * z)
@@ -70,6 +70,7 @@ def combinations(c: Array, a1: Array, a2: Array, steps: int = 60) -> tuple[Array
     """`combination` for offsets (m, n) and matrices (m, n, n), by bisection on the derivative."""
     s1, s2 = a1 @ np.swapaxes(a1, 1, 2), a2 @ np.swapaxes(a2, 1, 2)
     low, high = np.zeros(len(c)), np.ones(len(c))
+    y: NDArray[Any] = c
     for _ in range(steps):
         w = 0.5 * (low + high)
         matrix = s1 / w[:, None, None] + s2 / (1 - w)[:, None, None]
@@ -202,7 +203,8 @@ def containment_value(arena: Body, part: Body) -> float:
     top, push = sigma[0] ** 2, sigma * p
     easy = sigma < sigma[0] * (1 - 1e-14)
     rest = np.where(easy, push / np.where(easy, top - sigma**2, 1), 0)
-    if np.all(np.abs(push[~easy]) < 1e-300) and rest @ rest <= 1:  # the hard case
+    tiny = 1e-15 * sigma[0] * (sigma[0] + np.linalg.norm(p))
+    if np.all(np.abs(push[~easy]) < tiny) and rest @ rest <= 1:  # the hard case
         z = rest.copy()
         z[0] = np.sqrt(1 - rest @ rest)
     else:
@@ -313,7 +315,9 @@ def _interval(
     if found.fun >= 0:
         return None
     tight = {"xtol": 1e-300, "rtol": 1e-14}
-    return float(brentq(excess, low, found.x, **tight)), float(brentq(excess, found.x, high, **tight))
+    return float(brentq(excess, low, found.x, **tight)), float(
+        brentq(excess, found.x, high, **tight)
+    )
 
 
 # --------------------------------------------------------------------------- FCL

@@ -1,8 +1,8 @@
 """Bodies and scenes that are nasty on purpose: hypothesis strategies and seeded generators.
 
-Shapes: spheres, needles, discs and blades up to axis ratio 1e6, and mild ones.  Rotations: the identity,
-tiny and half-turn ones among the random.  Pairs built to touch, or to miss or overlap by a given
-amount that needs no oracle to know.
+Shapes: spheres, needles, discs and blades up to axis ratio 1e6, and mild ones.  Rotations: the
+identity, tiny and half-turn ones among the random.  Pairs built to touch, or to miss or overlap
+by a given amount that needs no oracle to know.
 """
 
 from __future__ import annotations
@@ -91,6 +91,12 @@ def boundary_point(a: Array, u: Array) -> Array:
     return np.asarray(wide @ back / np.sqrt((back * back).sum()))
 
 
+def normal_at(a: Array, z: Array) -> Array:
+    """The outward unit normal (n,) at the boundary point a @ z, |z| = 1."""
+    u = np.linalg.solve(a.T, z)
+    return np.asarray(u / np.linalg.norm(u), dtype=np.float64)
+
+
 def touching_offset(a1: Array, a2: Array, u: Array, gap: float) -> Array:
     """Offset (n,) of the centres at which two ellipsoids are `gap` apart along the normal u.
 
@@ -104,8 +110,12 @@ def touching_offset(a1: Array, a2: Array, u: Array, gap: float) -> Array:
 
 
 def touching_pair(
-    rng: Rng, dimension: int, gap: float, kinds: tuple[str, str] = ("mild", "mild"),
-    ratio: float = 4.0, sizes: tuple[float, float] = (1.0, 1.0),
+    rng: Rng,
+    dimension: int,
+    gap: float,
+    kinds: tuple[str, str] = ("mild", "mild"),
+    ratio: float = 4.0,
+    sizes: tuple[float, float] = (1.0, 1.0),
 ) -> tuple[Body, Body]:
     """Two bodies `gap` apart along a normal that is moderate for the first one."""
     a1 = matrix(rng, dimension, kinds[0], ratio, sizes[0])
@@ -129,8 +139,12 @@ def crossing_needles(
         turn = rng.uniform(0, np.pi)
         thin = np.array([0.0, 0.0, 1.0])
         local = np.stack(
-            [axis, np.cos(turn) * across + np.sin(turn) * thin,
-             -np.sin(turn) * across + np.cos(turn) * thin], axis=1,
+            [
+                axis,
+                np.cos(turn) * across + np.sin(turn) * thin,
+                -np.sin(turn) * across + np.cos(turn) * thin,
+            ],
+            axis=1,
         )
         bodies.append(frame @ local * semi_axes(rng, 3, "needle", ratio))
     # a normal nearly across both: the contact then sits well inside either needle's length
@@ -184,8 +198,7 @@ def pair_of(shape: Shape, gap: float | None = None) -> tuple[Body, Body]:
     a2 = a2 * 10 ** rng.uniform(-1, 1)
     u = unit_vector(rng, n)
     if rng.uniform() < 0.5:  # uniform on the first body instead: contact at a needle's waist
-        u = np.linalg.solve(a1.T, u)
-        u = u / np.linalg.norm(u)
+        u = normal_at(a1, u)
     if gap is None:
         offset = u * rng.uniform(0, 2) * (np.linalg.norm(a1, 2) + np.linalg.norm(a2, 2))
     else:
@@ -215,8 +228,13 @@ def ellipsoid_of(body: Body, name: str = "") -> Any:
 
 
 def random_scene(
-    rng: Rng, dimension: int, obstacles: int = 6, arenas: int = 1, parts: int = 3,
-    ratio: float = 4.0, rotates: bool = True,
+    rng: Rng,
+    dimension: int,
+    obstacles: int = 6,
+    arenas: int = 1,
+    parts: int = 3,
+    ratio: float = 4.0,
+    rotates: bool = True,
 ) -> Scene:
     """A robot of a few parts (reach about 2) among obstacles in a world of half-width 8."""
     n = dimension

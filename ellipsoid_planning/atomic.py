@@ -6,6 +6,12 @@ import os
 from pathlib import Path
 
 
+def partial_path(path: str | Path) -> Path:
+    """Return the file beside `path` that holds what this process has written of it so far."""
+    target = Path(path)
+    return target.with_name(f".{target.name}.{os.getpid()}.part")
+
+
 def write_text(path: str | Path, text: str) -> None:
     """Write `text` as UTF-8 to `path`: to a file beside it first, which then takes its place.
 
@@ -16,7 +22,7 @@ def write_text(path: str | Path, text: str) -> None:
         OSError: if the folder is missing or the file cannot be written.
     """
     target = Path(path)
-    beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+    beside = partial_path(target)
     try:
         with beside.open("w", encoding="utf-8", newline="\n") as stream:
             stream.write(text)

@@ -9,12 +9,12 @@ from typing import Any
 from typer.core import TyperGroup
 
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from planners.cli.interrupt import INTERRUPTED
 from planners.cli.terminal import say
 
 SOLVED = 0
 NO_PATH = 1
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 
 class CommandGroup(TyperGroup):

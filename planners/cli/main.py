@@ -9,6 +9,7 @@ import typer
 from ellipsoid_planning import __version__
 from planners.cli.command_group import CommandGroup
 from planners.cli.figure import figure
+from planners.cli.interrupt import end_on_interrupt
 from planners.cli.plan import plan
 from planners.cli.scenarios import scenarios
 from planners.cli.schema import schema
@@ -66,6 +67,7 @@ for command in (plan, show, figure, scenarios, verify, schema):
 
 def main() -> None:
     """Run the command line; the process ends with the exit code."""
+    end_on_interrupt()
     app(prog_name=PROGRAM)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ellipsoid_planning import atomic
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from planners.cli.interrupt import clean_up
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
@@ -24,6 +25,8 @@ COLUMNS = {
 def check_outputs(**outputs: Path | None) -> None:
     """Check that files can be written where the options, by name, want them.
 
+    Ctrl-C leaves no half-written remainders of these files.
+
     Raises:
         EllipsoidPlanningError: a folder is missing or is not one, an output is a folder, or two
             options name the same file.
@@ -38,6 +41,7 @@ def check_outputs(**outputs: Path | None) -> None:
             raise EllipsoidPlanningError(
                 f"--{other} and --{option}: expected two files, both are {path}; rename one"
             )
+    clean_up([path for path in outputs.values() if path is not None])
 
 
 def _check_output(option: str, path: Path) -> None:

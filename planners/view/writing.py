@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
+from ellipsoid_planning.atomic import partial_path
 from ellipsoid_planning.errors import EllipsoidPlanningError
 
 
@@ -20,7 +20,7 @@ def write_whole(output: str | Path, content: bytes) -> Path:
         raise EllipsoidPlanningError(
             f"{target}: the folder {str(target.parent)!r} does not exist; create it first"
         )
-    beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+    beside = partial_path(target)
     try:
         beside.write_bytes(content)
         beside.replace(target)

@@ -99,6 +99,8 @@ def plan(
     if result.status in ("invalid_start", "invalid_goal"):
         say(f"Error: the {result.status.removeprefix('invalid_')} cannot be proved free")
         raise typer.Exit(BAD_INPUT)
+    if result.path is not None and not result.path.certified:
+        say("Note: the path is not certified; verify it before you rely on it.")
     _print(result, json)
     _write(result, output, csv, html)
     raise typer.Exit(SOLVED if result.solved else NO_PATH)

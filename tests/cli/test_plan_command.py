@@ -116,9 +116,12 @@ def test_the_same_seed_plans_the_same_path(scenario_file):
     assert one["path"] == other["path"]
 
 
-def test_fcl_checks_at_a_resolution(scenario_file):
-    done = run("plan", scenario_file(), "--checker", "fcl", "--seed", 1)
+@pytest.mark.parametrize("checker", ["plugin", "fcl"])
+def test_a_path_that_is_not_certified_is_pointed_out(checker, scenario_file):
+    done = run("plan", scenario_file(), "--checker", checker, "--seed", 1, "--json")
     assert done.returncode == 0, done.stderr
+    certified = json.loads(done.stdout)["path"]["certified"]
+    assert ("not certified" in done.stderr) is not certified
 
 
 def test_an_existing_result_is_replaced(scenario_file, tmp_path):

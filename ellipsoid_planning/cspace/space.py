@@ -24,8 +24,11 @@ _CLEARANCE_PROOFS = 14
 class CSpace:
     """A robot's configurations in a world, with proofs of what is free.
 
-    Whatever is called valid is proved so, rounding included; a free configuration or motion may be
-    refused only when its clearance is within about 1e-12 of the scene's size.
+    Whatever is called valid is proved so, rounding included. What is free may be refused
+
+    - when its clearance is within about 1e-12 of the scene's size (1e-10 at axis ratios of 1e6),
+    - with a ``clearance`` asked for, when a part all but fills an arena: no single ellipsoid then
+      encloses part and ball tightly, and up to a sixth of the true room may be given up.
 
     Attributes:
         world, robot: what the space is made from.

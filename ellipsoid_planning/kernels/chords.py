@@ -15,10 +15,12 @@ import math
 from .compile import kernel
 from .layout import BODY_CENTRE, BODY_EXTENT, BODY_MATRIX, PLACED_CENTRE, PLACED_EXTENT
 from .layout import PLACED_MATRIX
-from .linear import norm, shape_matrix, solve, times, transposed_times
+from .linear import norm, shape_matrix, solve_positive, times, transposed_times
 from .whitening import WHITEN_MATRIX, WHITEN_SQUARES
 
 _STEPS = 60
+# Roundings of s and p change the arena's family by about this many roundings of 1 at most.
+_TRUSTED_PULL = 4.0
 MISS = 0
 HIT = 1
 
@@ -167,8 +169,8 @@ def _sharpen(bodies, j, placed, i, clearance, cx, cy, cz, axis, sign, ux, uy, uz
         else:
             m5 += stiff
             rz = 0.0
-        dx, dy, dz, det = solve(m0, m1, m2, m3, m4, m5, rx, ry, rz)
-        if not det > 0.0:
+        dx, dy, dz, _, positive = solve_positive(m0, m1, m2, m3, m4, m5, rx, ry, rz)
+        if not positive:
             break
         step = 1.0
         improved = False
@@ -251,30 +253,53 @@ def _misses(bodies, j, placed, i, keep, cx, cy, cz, axis, ux, uy, uz):
 
 
 @kernel
-def _best_mu(q0, q1, q2, s0, s1, s2):
-    """Minimiser μ of μ + Σ q_k μ/(μ − s_k) for q_k = p_k² ≥ 0 over μ > max s_k (a safe one)."""
-    low = max(s0, max(s1, s2))
-    root = math.sqrt(s0 + s1 + s2)
-    high = root * (root + math.sqrt(q0 + q1 + q2)) * (1.0 + 1e-12) + 1e-300
-    mu = high
+def _member(mu, p0, p1, p2, w0, w1, w2, s0, s1, s2):
+    """The arena's family at μ along p + t w: (least value, its t, curvature α).
+
+    Its value at t′ is least + α (t′ − t)²: sums of positive terms, which do not cancel where μ
+    comes close to an s.
+    """
+    d0, d1, d2 = mu / (mu - s0), mu / (mu - s1), mu / (mu - s2)
+    alpha = d0 * w0 * w0 + d1 * w1 * w1 + d2 * w2 * w2
+    t = -(d0 * w0 * p0 + d1 * w1 * p1 + d2 * w2 * p2) / alpha
+    q0, q1, q2 = p0 + t * w0, p1 + t * w1, p2 + t * w2
+    return mu + d0 * q0 * q0 + d1 * q1 * q1 + d2 * q2 * q2, t, alpha
+
+
+@kernel
+def _pull(mu, q0, q1, q2, s0, s1, s2):
+    """Σ q_k² s_k/(μ − s_k)²: above 1 a larger μ lowers the family's value at the point q."""
+    e0, e1, e2 = q0 / (mu - s0), q1 / (mu - s1), q2 / (mu - s2)
+    return s0 * e0 * e0 + s1 * e1 * e1 + s2 * e2 * e2
+
+
+@kernel
+def _deepest(limit, p0, p1, p2, w0, w1, w2, s0, s1, s2):
+    """Some (found, μ, t) where the family is at most ``limit`` on the line.
+
+    The least value over t is convex in μ, and every μ above 1 is useless: bisection on its
+    slope, which ends early where the tangent shows that nothing can be found.
+    """
+    low, high = max(s0, max(s1, s2)), 1.0
+    if not low < high:
+        return False, 0.0, 0.0
+    mu = math.sqrt(max(low, 1e-4))
     for _ in range(_STEPS):
-        d0, d1, d2 = 1.0 / (mu - s0), 1.0 / (mu - s1), 1.0 / (mu - s2)
-        r0, r1, r2 = q0 * s0 * d0 * d0, q1 * s1 * d1 * d1, q2 * s2 * d2 * d2
-        total = r0 + r1 + r2
-        if total > 1.0:
-            low = mu
-        else:
-            high = mu
-        if abs(total - 1.0) < 1e-10 or high - low <= 1e-15 * high:
-            break
-        slope = r0 * d0 + r1 * d1 + r2 * d2
-        step = mu
+        value, t, _ = _member(mu, p0, p1, p2, w0, w1, w2, s0, s1, s2)
+        pull = _pull(mu, p0 + t * w0, p1 + t * w1, p2 + t * w2, s0, s1, s2)
+        if value <= limit and pull <= _TRUSTED_PULL:
+            return True, mu, t
+        slope = 1.0 - pull
         if slope > 0.0:
-            step = mu + (math.sqrt(total) - 1.0) * total / slope
-        if not (step > low and step < high):
-            step = 0.5 * (low + high)
-        mu = step
-    return mu
+            high = mu
+            if value + slope * (low - mu) > limit:
+                break
+        else:
+            low = mu
+            if value + slope * (high - mu) > limit:
+                break
+        mu = 0.5 * (low + high)
+    return False, 0.0, 0.0
 
 
 @kernel
@@ -295,46 +320,46 @@ def arena_chord(bodies, j, placed, i, table, row, tolerance, axis, x, y, z):
     w1 = table[row, WHITEN_MATRIX + 3 + axis]
     w2 = table[row, WHITEN_MATRIX + 6 + axis]
     limit = 1.0 - tolerance
-    t = -(w0 * p0 + w1 * p1 + w2 * p2) / (w0 * w0 + w1 * w1 + w2 * w2)
-    mu, inside = 1.0, False
-    for _ in range(_STEPS):
-        q0, q1, q2 = p0 + t * w0, p1 + t * w1, p2 + t * w2
-        mu = _best_mu(q0 * q0, q1 * q1, q2 * q2, s0, s1, s2)
-        d0, d1, d2 = mu / (mu - s0), mu / (mu - s1), mu / (mu - s2)
-        alpha = d0 * w0 * w0 + d1 * w1 * w1 + d2 * w2 * w2
-        beta = d0 * w0 * p0 + d1 * w1 * p1 + d2 * w2 * p2
-        gamma = d0 * p0 * p0 + d1 * p1 * p1 + d2 * p2 * p2
-        last, t = t, -beta / alpha
-        if mu + gamma - beta * beta / alpha <= limit:
-            inside = True
-            break
-        if abs(t - last) <= 1e-14 * (1.0 + abs(t)):
-            break
-    if not inside:
+    found, mu, t = _deepest(limit, p0, p1, p2, w0, w1, w2, s0, s1, s2)
+    if not found:
         return False, 0.0, 0.0
-    low = _arena_end(-1.0, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2)
-    high = _arena_end(1.0, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2)
+    low = _arena_end(-1.0, mu, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2)
+    high = _arena_end(1.0, mu, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2)
     return True, low, high
 
 
 @kernel
-def _arena_end(sign, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2):
-    """Outermost known inside point towards ``sign``: each μ's own interval reaches further."""
-    for _ in range(_STEPS):
-        q0, q1, q2 = p0 + t * w0, p1 + t * w1, p2 + t * w2
-        mu = _best_mu(q0 * q0, q1 * q1, q2 * q2, s0, s1, s2)
-        d0, d1, d2 = mu / (mu - s0), mu / (mu - s1), mu / (mu - s2)
-        alpha = d0 * w0 * w0 + d1 * w1 * w1 + d2 * w2 * w2
-        beta = d0 * w0 * p0 + d1 * w1 * p1 + d2 * w2 * p2
-        gamma = d0 * p0 * p0 + d1 * p1 * p1 + d2 * p2 * p2
-        root = beta * beta - alpha * (gamma + mu - limit)
-        if not root >= 0.0:
+def _arena_end(sign, mu, t, limit, p0, p1, p2, w0, w1, w2, s0, s1, s2):
+    """Outermost inside point towards ``sign`` over all μ, from a μ and t that are inside.
+
+    The end of μ's own interval is quasi-concave in μ; it grows with μ where the pull there is
+    above 1. A bracketed secant on 1/√pull − 1, nearly linear as in trust regions.
+    """
+    low, high = max(s0, max(s1, s2)), 1.0
+    inside = mu
+    low_error, high_error = math.nan, math.nan
+    for step in range(_STEPS):
+        value, middle, alpha = _member(mu, p0, p1, p2, w0, w1, w2, s0, s1, s2)
+        if value > limit:
+            if mu < inside:
+                low, low_error = mu, math.nan
+            else:
+                high, high_error = mu, math.nan
+        else:
+            end = middle + sign * math.sqrt((limit - value) / alpha)
+            pull = _pull(mu, p0 + end * w0, p1 + end * w1, p2 + end * w2, s0, s1, s2)
+            if pull <= _TRUSTED_PULL:
+                t = max(t, end) if sign > 0.0 else min(t, end)
+            error = 1.0 / math.sqrt(pull) - 1.0 if pull > 0.0 else 1.0
+            if error < 0.0:
+                low, low_error = mu, error
+            else:
+                high, high_error = mu, error
+            if abs(error) < 1e-9:
+                break
+        if high - low <= 1e-15 * high:
             break
-        reach = (sign * math.sqrt(root) - beta) / alpha
-        if not sign * reach > sign * t:
-            break
-        settled = abs(reach - t) <= 1e-13 * (1.0 + abs(t))
-        t = reach
-        if settled:
-            break
+        mu = (low * high_error - high * low_error) / (high_error - low_error)
+        if step % 3 == 2 or not (mu > low and mu < high):
+            mu = 0.5 * (low + high)
     return t

@@ -48,24 +48,6 @@ def shape_matrix(rows, i, first):
 
 
 @kernel
-def solve(xx, xy, xz, yy, yz, zz, u, v, w):
-    """M⁻¹ (u, v, w) of a symmetric M, and det M, by cofactors."""
-    cxx = yy * zz - yz * yz
-    cxy = xz * yz - xy * zz
-    cxz = xy * yz - xz * yy
-    cyy = xx * zz - xz * xz
-    cyz = xy * xz - xx * yz
-    czz = xx * yy - xy * xy
-    det = xx * cxx + xy * cxy + xz * cxz
-    return (
-        (cxx * u + cxy * v + cxz * w) / det,
-        (cxy * u + cyy * v + cyz * w) / det,
-        (cxz * u + cyz * v + czz * w) / det,
-        det,
-    )
-
-
-@kernel
 def rotation_matrix(qx, qy, qz, qw):
     """The nine entries, row-major, of the rotation of a quaternion (x, y, z, w) of any length."""
     s = 2.0 / (qx * qx + qy * qy + qz * qz + qw * qw)

@@ -14,8 +14,8 @@ Perram and Wertheim (1985) gave the function of λ; its second derivative serves
 import math
 
 from .compile import kernel
-from .layout import BODY_CENTRE, BODY_MATRIX, PLACED_CENTRE, PLACED_MATRIX
-from .linear import norm, shape_matrix, solve, transposed_times
+from .layout import BODY_CENTRE, BODY_INVERSE, BODY_MATRIX, PLACED_CENTRE, PLACED_MATRIX
+from .linear import norm, shape_matrix, solve_positive, times, transposed_times
 
 _STEPS = 40
 _POLISH_STEPS = 30
@@ -57,33 +57,56 @@ def separation(bodies, j, placed, i, lam, required, mode):
     ``value`` is a lower bound of the distance, valid for the unit vector u. It exceeds
     ``required`` whenever that can be proved; otherwise the bodies are closer than that, or meet
     (then ``value`` is negative, and −value bounds the penetration depth from above).
+
+    The iteration runs where the obstacle is the unit ball, v ↦ A₁⁻¹v: there Σ₁ = I, which keeps
+    its accuracy for parallel needles. Gaps are always taken from the bodies themselves.
     """
-    cx = placed[i, PLACED_CENTRE] - bodies[j, BODY_CENTRE]
-    cy = placed[i, PLACED_CENTRE + 1] - bodies[j, BODY_CENTRE + 1]
-    cz = placed[i, PLACED_CENTRE + 2] - bodies[j, BODY_CENTRE + 2]
-    a0, a1, a2, a3, a4, a5 = shape_matrix(bodies, j, BODY_MATRIX)
-    b0, b1, b2, b3, b4, b5 = shape_matrix(placed, i, PLACED_MATRIX)
+    cx, cy, cz = times(
+        bodies,
+        j,
+        BODY_INVERSE,
+        placed[i, PLACED_CENTRE] - bodies[j, BODY_CENTRE],
+        placed[i, PLACED_CENTRE + 1] - bodies[j, BODY_CENTRE + 1],
+        placed[i, PLACED_CENTRE + 2] - bodies[j, BODY_CENTRE + 2],
+    )
+    m = PLACED_MATRIX
+    e0, e3, e6 = times(bodies, j, BODY_INVERSE, placed[i, m], placed[i, m + 3], placed[i, m + 6])
+    e1, e4, e7 = times(
+        bodies, j, BODY_INVERSE, placed[i, m + 1], placed[i, m + 4], placed[i, m + 7]
+    )
+    e2, e5, e8 = times(
+        bodies, j, BODY_INVERSE, placed[i, m + 2], placed[i, m + 5], placed[i, m + 8]
+    )
+    s0 = e0 * e0 + e1 * e1 + e2 * e2
+    s1 = e0 * e3 + e1 * e4 + e2 * e5
+    s2 = e0 * e6 + e1 * e7 + e2 * e8
+    s3 = e3 * e3 + e4 * e4 + e5 * e5
+    s4 = e3 * e6 + e4 * e7 + e5 * e8
+    s5 = e6 * e6 + e7 * e7 + e8 * e8
     low, high = 0.0, 1.0
     best, ux, uy, uz = -math.inf, 1.0, 0.0, 0.0
-    meet = False
+    yx, yy, yz = cx, cy, cz
+    meet = cx == 0.0 and cy == 0.0 and cz == 0.0
     for _ in range(_STEPS):
         p, q = 1.0 / lam, 1.0 / (1.0 - lam)
-        m0, m1, m2 = p * a0 + q * b0, p * a1 + q * b1, p * a2 + q * b2
-        m3, m4, m5 = p * a3 + q * b3, p * a4 + q * b4, p * a5 + q * b5
-        yx, yy, yz, det = solve(m0, m1, m2, m3, m4, m5, cx, cy, cz)
-        length = norm(yx, yy, yz)
-        if not (det > 0.0 and length > 0.0 and length < math.inf):
-            meet = cx == 0.0 and cy == 0.0 and cz == 0.0
+        d0, d1, d2 = p + q * s0, q * s1, q * s2
+        d3, d4, d5 = p + q * s3, q * s4, p + q * s5
+        yx, yy, yz, form, positive = solve_positive(d0, d1, d2, d3, d4, d5, cx, cy, cz)
+        if meet or not positive:
             break
-        sx, sy, sz = transposed_times(bodies, j, BODY_MATRIX, yx, yy, yz)
-        tx, ty, tz = transposed_times(placed, i, PLACED_MATRIX, yx, yy, yz)
-        first, second = norm(sx, sy, sz), norm(tx, ty, tz)
-        value = (yx * cx + yy * cy + yz * cz - first - second) / length
-        if value > best:
-            best, ux, uy, uz = value, yx / length, yy / length, yz / length
+        first = norm(yx, yy, yz)
+        second = norm(
+            e0 * yx + e3 * yy + e6 * yz, e1 * yx + e4 * yy + e7 * yz, e2 * yx + e5 * yy + e8 * yz
+        )
         a, b = p * first, q * second
-        if value > required and (mode == DECIDE or abs(a - b) < 0.05 * (a + b)):
-            break
+        even = abs(a - b) < 0.05 * (a + b)
+        if form > first + second and (mode == DECIDE or even):
+            vx, vy, vz = transposed_times(bodies, j, BODY_INVERSE, yx, yy, yz)
+            length = norm(vx, vy, vz)
+            ux, uy, uz = vx / length, vy / length, vz / length
+            best = gap_along(bodies, j, placed, i, ux, uy, uz)
+            if best > required:
+                break
         if a <= 1.0 and b <= 1.0:
             meet = True
             break
@@ -93,15 +116,20 @@ def separation(bodies, j, placed, i, lam, required, mode):
             low = lam
         else:
             high = lam
-        # N = Σ₁/λ² − Σ₂/(1−λ)²; F″ = 2 (Ny·M⁻¹Ny − a²/λ − b²/(1−λ)).
-        wx = p * p * (a0 * yx + a1 * yy + a2 * yz) - q * q * (b0 * yx + b1 * yy + b2 * yz)
-        wy = p * p * (a1 * yx + a3 * yy + a4 * yz) - q * q * (b1 * yx + b3 * yy + b4 * yz)
-        wz = p * p * (a2 * yx + a4 * yy + a5 * yz) - q * q * (b2 * yx + b4 * yy + b5 * yz)
-        vx, vy, vz, det = solve(m0, m1, m2, m3, m4, m5, wx, wy, wz)
-        bend = 2.0 * (wx * vx + wy * vy + wz * vz - p * a * a - q * b * b)
+        # N = I/λ² − S/(1−λ)²; F″ = 2 (Ny·M⁻¹Ny − a²/λ − b²/(1−λ)).
+        wx = p * p * yx - q * q * (s0 * yx + s1 * yy + s2 * yz)
+        wy = p * p * yy - q * q * (s1 * yx + s3 * yy + s4 * yz)
+        wz = p * p * yz - q * q * (s2 * yx + s4 * yy + s5 * yz)
+        _, _, _, bend, _ = solve_positive(d0, d1, d2, d3, d4, d5, wx, wy, wz)
+        bend = 2.0 * (bend - p * a * a - q * b * b)
         lam = next_weight(lam, low, high, a * a - b * b, bend)
-    if mode != CONVERGE and (meet or best > required):
+    if best > required and mode != CONVERGE:
         return best, ux, uy, uz, lam
+    vx, vy, vz = transposed_times(bodies, j, BODY_INVERSE, yx, yy, yz)
+    length = norm(vx, vy, vz)
+    if length > 0.0 and length < math.inf:
+        ux, uy, uz = vx / length, vy / length, vz / length
+    best = gap_along(bodies, j, placed, i, ux, uy, uz)
     if meet and mode != CONVERGE:
         return best, ux, uy, uz, lam
     best, ux, uy, uz = polish(bodies, j, placed, i, ux, uy, uz, required, mode)
@@ -149,7 +177,7 @@ def polish(bodies, j, placed, i, ux, uy, uz, required, mode):
         trace = m0 + m3 + m5
         shift = max(value, 0.0) + damping * trace
         # The Hessian vanishes along u; the trace there makes the matrix regular.
-        dx, dy, dz, det = solve(
+        dx, dy, dz, _, positive = solve_positive(
             m0 + shift + trace * ux * ux,
             m1 + trace * ux * uy,
             m2 + trace * ux * uz,
@@ -160,6 +188,11 @@ def polish(bodies, j, placed, i, ux, uy, uz, required, mode):
             ry,
             rz,
         )
+        if not positive:
+            if damping > 1e3:
+                break
+            damping = max(10.0 * damping, 1e-6)
+            continue
         nx, ny, nz = ux + dx, uy + dy, uz + dz
         length = norm(nx, ny, nz)
         if not (length > 0.0 and length < math.inf):

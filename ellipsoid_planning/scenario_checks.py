@@ -13,7 +13,8 @@ from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.scenario_origin import Path
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.cspace.space import Contact, CSpace
+    from ellipsoid_planning.cspace.contacts import Contact
+    from ellipsoid_planning.cspace.space import CSpace
 
 ROUNDING = 1e-12
 MOST_CONTACTS = 3

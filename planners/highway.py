@@ -84,8 +84,8 @@ class HighwayRoadmap(ob.Planner):
         self.error = None
         try:
             return ob.PlannerStatus(self._solve(ptc))
-        except Exception:
-            # An exception that crosses the bindings would end a whole benchmark.
+        # An exception that crosses the bindings would end a whole benchmark.
+        except Exception:  # noqa: BLE001
             self.error = traceback.format_exc()
             return ob.PlannerStatus(Statuses.CRASH)
 
@@ -150,7 +150,7 @@ class HighwayRoadmap(ob.Planner):
 
     def warm_up(self) -> None:
         """Compile every kernel that a solve can call, leaving the planner as it was."""
-        highway.compile_kernels(cspace_of(self.getSpaceInformation()))
+        highway.HighwayRoadmap(cspace_of(self.getSpaceInformation())).compile_kernels()
 
     @property
     def statistics(self) -> dict[str, Any]:

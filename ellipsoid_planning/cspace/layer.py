@@ -56,9 +56,7 @@ class Layer:
         point[:n] = values
         out = np.empty((lines.CAPACITY, 2))
         cache = (self._table, self._keys, self._scratch)
-        count = lines.free_intervals(
-            self._scene, self._placed, 0, *cache, axis % n, *point, out
-        )
+        count = lines.free_intervals(self._scene, self._placed, 0, *cache, axis % n, *point, out)
         return out[:count]
 
     def obstacle_pairs(self) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
@@ -78,7 +76,9 @@ class Layer:
         pairs = []
         for part in self._robot.parts:
             offset = self.rotation @ part.centre
-            turned = Ellipsoid(np.zeros(n), self.rotation @ part.rotation, part.semi_axes, part.name)
+            turned = Ellipsoid(
+                np.zeros(n), self.rotation @ part.rotation, part.semi_axes, part.name
+            )
             for body in bodies:
                 moved = Ellipsoid(body.centre - offset, body.rotation, body.semi_axes, body.name)
                 pairs.append((moved, turned))

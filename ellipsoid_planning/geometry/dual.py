@@ -69,9 +69,7 @@ def gap(first: Ellipsoid, second: Ellipsoid) -> Gap:
     n = _same_dimension(first, second)
     bodies, placed = body_row(first)[None], placed_row(second)[None]
     start = first.semi_axes.max() / (first.semi_axes.max() + second.semi_axes.max())
-    value, *u, _ = separation.separation(
-        bodies, 0, placed, 0, start, math.inf, separation.CONVERGE
-    )
+    value, *u, _ = separation.separation(bodies, 0, placed, 0, start, math.inf, separation.CONVERGE)
     return Gap(value - layout.ROUNDING * _scale(first, second), np.array(u[:n]))
 
 
@@ -107,7 +105,9 @@ def _aligned(
     along = np.asarray(direction, dtype=float)
     length = float(np.linalg.norm(along))
     if along.shape != (n,) or not 0.0 < length < math.inf:
-        raise GeometryError(f"expected a direction of {n} numbers, not all zero, got {direction}")
+        raise GeometryError(
+            f"expected a direction of {n} numbers, not all zero, got {along.tolist()}"
+        )
     turn = _frame(along / length)
     start = np.zeros(3)
     start[:n] = turn @ (np.asarray(origin, dtype=float) - body.centre)

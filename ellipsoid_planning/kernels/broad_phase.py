@@ -16,7 +16,7 @@ from .layout import NODE_HIGH, NODE_LOW, NODE_OBSTACLE, NODE_SKIP
 
 @kernel
 def next_overlap(tree, node, x0, y0, z0, x1, y1, z1):
-    """Index of the first leaf at or after ``node`` whose box meets [(x0,y0,z0), (x1,y1,z1)]; or -1."""
+    """First leaf at or after ``node`` whose box meets [(x0, y0, z0), (x1, y1, z1)], or −1."""
     count = tree.shape[0]
     while node < count:
         if (

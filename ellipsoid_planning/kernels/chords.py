@@ -13,8 +13,14 @@ sum crosses the line, computed from the bodies themselves: an outer end, whateve
 import math
 
 from .compile import kernel
-from .layout import BODY_CENTRE, BODY_EXTENT, BODY_MATRIX, PLACED_CENTRE, PLACED_EXTENT
-from .layout import PLACED_MATRIX
+from .layout import (
+    BODY_CENTRE,
+    BODY_EXTENT,
+    BODY_MATRIX,
+    PLACED_CENTRE,
+    PLACED_EXTENT,
+    PLACED_MATRIX,
+)
 from .linear import norm, shape_matrix, solve_positive, times, transposed_times
 from .whitening import WHITEN_MATRIX, WHITEN_SQUARES
 
@@ -133,7 +139,7 @@ def crossing(bodies, j, placed, i, clearance, cx, cy, cz, axis, ux, uy, uz):
 
 @kernel
 def _sharpen(bodies, j, placed, i, clearance, cx, cy, cz, axis, sign, ux, uy, uz):
-    """Newton steps for the normal whose plane crosses the line earliest (convex in u, u·e fixed)."""
+    """Newton steps for the plane that crosses the line earliest (convex in u at fixed u·e)."""
     a0, a1, a2, a3, a4, a5 = shape_matrix(bodies, j, BODY_MATRIX)
     b0, b1, b2, b3, b4, b5 = shape_matrix(placed, i, PLACED_MATRIX)
     best, slope = crossing(bodies, j, placed, i, clearance, cx, cy, cz, axis, ux, uy, uz)
@@ -218,9 +224,7 @@ def obstacle_chord(bodies, j, placed, i, table, row, clearance, tolerance, axis,
             continue
         end, slope = crossing(bodies, j, placed, i, keep, cx, cy, cz, axis, ux, uy, uz)
         if clearance > 0.0 and slope * sign > 0.0:
-            end, slope = _sharpen(
-                bodies, j, placed, i, keep, cx, cy, cz, axis, sign, ux, uy, uz
-            )
+            end, slope = _sharpen(bodies, j, placed, i, keep, cx, cy, cz, axis, sign, ux, uy, uz)
         if slope * sign > 0.0:
             if k == 0:
                 ends_high = min(ends_high, end)

@@ -61,3 +61,25 @@ def find_layer(orientations, neighbours, count, distances, q, joined):
         orientations[count, m] = q[m]
     _join_nearest(distances, neighbours, count, joined)
     return count
+
+
+@kernel
+def between(first, last, out):
+    """Fill ``out`` (m, 4) with orientations evenly between two quaternions, both excluded.
+
+    Returns False, with nothing written, if the two are less than 2e-6 rad apart.
+    """
+    dot = 0.0
+    for m in range(4):
+        dot += first[m] * last[m]
+    sign = -1.0 if dot < 0.0 else 1.0
+    angle = math.acos(min(abs(dot), 1.0))
+    if angle < 1e-6:
+        return False
+    count = out.shape[0]
+    for k in range(count):
+        s = (k + 1.0) / (count + 1.0)
+        a, b = math.sin((1.0 - s) * angle), sign * math.sin(s * angle)
+        for m in range(4):
+            out[k, m] = (a * first[m] + b * last[m]) / math.sin(angle)
+    return True

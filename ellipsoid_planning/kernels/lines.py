@@ -82,7 +82,7 @@ def _whitened_row(bodies, j, placed, i, key, table, keys, scratch):
 
 @kernel
 def _arena_interval(arenas, scene, placed, base, table, keys, scratch, columns, axis, x, y, z):
-    """Where all parts are inside all arenas, within the bounds: (low, high), empty if low > high."""
+    """Where all parts are inside all arenas and bounds: (low, high), empty if low > high."""
     low, high = scene[LOW + axis], scene[HIGH + axis]
     first = columns - arenas.shape[0]
     for i in range(placed.shape[0]):

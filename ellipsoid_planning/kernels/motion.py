@@ -261,7 +261,7 @@ def _sweep_is_free(scene, motion, clearance, placed, stack):
 
 @kernel
 def _set_motion(motion, first, move, turn, ax, ay, az, angle):
-    """Fill ``motion``: from pose ``first``, by Δx = ``move``, turning by ``angle`` about the axis."""
+    """Fill ``motion``: from ``first``, by Δx = ``move``, turning by ``angle`` about the axis."""
     for k in range(3):
         motion[k] = first[k]
         motion[3 + k] = move[k]
@@ -377,9 +377,7 @@ def motions_are_free(scene, first, last, counts):
     """:func:`prove_motion` of every pair of rows (m, 7) at the scene's clearance."""
     motion, placed, stack = motion_workspaces()
     for k in range(first.shape[0]):
-        counts[k] = prove_motion(
-            scene, first[k], last[k], scene[CLEARANCE], motion, placed, stack
-        )
+        counts[k] = prove_motion(scene, first[k], last[k], scene[CLEARANCE], motion, placed, stack)
 
 
 @kernel

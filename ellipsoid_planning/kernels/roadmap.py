@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 
 from .compile import kernel
 from .containers import EMPTY, lookup, pop, push, store
-from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT
+from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT, new_placed
 from .lines import CAPACITY, free_intervals
 from .motion import prove_motion
 from .placement import place
+from .validity import placed_is_free
 
 # Status of a burst
 SEARCHING = 0
@@ -230,6 +231,38 @@ def _crossing(nodes, a, b, entry, choice):
 
 
 @kernel
+def _is_proved(scene, rm, ends):
+    """Whether the motion between the two poses ``ends`` is proved free."""
+    proofs = prove_motion(
+        scene, ends[0], ends[1], scene[CLEARANCE], rm.motion, rm.motion_placed, rm.motion_stack
+    )
+    return proofs > 0
+
+
+@kernel
+def _middle_is_free(scene, ends, placed):
+    """Whether the robot is free half-way, which most long motions that are not free show."""
+    first, last = ends[0], ends[1]
+    dot = 0.0
+    for m in range(3, 7):
+        dot += first[m] * last[m]
+    # The sum of two unit quaternions, the shorter way round, points half-way between them.
+    sign = -1.0 if dot < 0.0 else 1.0
+    place(
+        scene,
+        0.5 * (first[0] + last[0]),
+        0.5 * (first[1] + last[1]),
+        0.5 * (first[2] + last[2]),
+        first[3] + sign * last[3],
+        first[4] + sign * last[4],
+        first[5] + sign * last[5],
+        first[6] + sign * last[6],
+        placed,
+    )
+    return placed_is_free(scene, placed)
+
+
+@kernel
 def _prove_edge(scene, rm, a, b, entry, axis, ends):
     """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
     key = (min(a, b) << NODE_BITS) | max(a, b)
@@ -246,18 +279,7 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
             continue
         _pose(rm.orientations, rm.columns, rm.node_integers, a, za, axis, ends[0])
         _pose(rm.orientations, rm.columns, rm.node_integers, b, zb, axis, ends[1])
-        proved = (
-            prove_motion(
-                scene,
-                ends[0],
-                ends[1],
-                scene[CLEARANCE],
-                rm.motion,
-                rm.motion_placed,
-                rm.motion_stack,
-            )
-            > 0
-        )
+        proved = _is_proved(scene, rm, ends)
         if proved:
             break
     edge = rm.counters[EDGES]
@@ -272,15 +294,22 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
 @kernel
 def _open(rm, priority, cost, leave, target, parent, line):
     _add_entry(
-        rm.counters, rm.heap, rm.heap_items, rm.entry_reals, rm.entry_integers,
-        priority, cost, leave, target, parent, line,
+        rm.counters,
+        rm.heap,
+        rm.heap_items,
+        rm.entry_reals,
+        rm.entry_integers,
+        priority,
+        cost,
+        leave,
+        target,
+        parent,
+        line,
     )
 
 
 @kernel
-def _add_entry(
-    counters, heap, items, reals, integers, priority, cost, leave, target, parent, line
-):
+def _add_entry(counters, heap, items, reals, integers, priority, cost, leave, target, parent, line):
     entry = counters[ENTRIES]
     counters[ENTRIES] += 1
     reals[entry, 0], reals[entry, 1] = cost, leave
@@ -355,7 +384,7 @@ def _expand(rm, node, axis, goals, inflation, weight):
 
 
 @kernel
-def _meets_goal(scene, rm, node, axis, goals, ends):
+def _meets_goal(scene, rm, node, axis, goals, ends, placed):
     """The goal to which the direct motion from ``node`` is proved free, or −1."""
     entry = rm.node_reals[node, NODE_ENTRY]
     _pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
@@ -364,17 +393,9 @@ def _meets_goal(scene, rm, node, axis, goals, ends):
             ends[1, m] = goals[k, 1 + m]
         for m in range(4):
             ends[1, 3 + m] = rm.orientations[int(goals[k, 0]), m]
-        proofs = prove_motion(
-            scene,
-            ends[0],
-            ends[1],
-            scene[CLEARANCE],
-            rm.motion,
-            rm.motion_placed,
-            rm.motion_stack,
-        )
-        rm.counters[PROVED if proofs > 0 else REFUTED] += 1
-        if proofs > 0:
+        proved = _middle_is_free(scene, ends, placed) and _is_proved(scene, rm, ends)
+        rm.counters[PROVED if proved else REFUTED] += 1
+        if proved:
             return k
     return -1
 
@@ -395,7 +416,9 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
         layer, column = int(starts[k, 0]), int(starts[k, 4])
         node = node_at(scene, rm, layer, column, swept, axis, intervals)
         if node >= 0:
-            ahead = _heuristic(rm.orientations, rm.columns, layer, column, swept, axis, goals, weight)
+            ahead = _heuristic(
+                rm.orientations, rm.columns, layer, column, swept, axis, goals, weight
+            )
             _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
     return SEARCHING if rm.counters[OPEN] > 0 else EXHAUSTED
 
@@ -423,6 +446,7 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
     """
     intervals = np.empty((CAPACITY, 2))
     ends = np.empty((2, 7))
+    placed = new_placed(scene)
     for _ in range(steps):
         if not _has_room(rm):
             return GROW
@@ -447,10 +471,10 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
                 continue
             cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
             cost += _step(
-            rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
-        )
+                rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
+            )
             _reach(rm, node, parent, za, zb, cost)
-        goal = _meets_goal(scene, rm, node, axis, goals, ends)
+        goal = _meets_goal(scene, rm, node, axis, goals, ends, placed)
         if goal >= 0:
             rm.counters[GOAL_REACHED] = node * goals.shape[0] + goal
             return SOLVED
@@ -459,23 +483,56 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
 
 
 @kernel
-def trace(rm, last, axis, out):
-    """Poses (7,) from the start to node ``last``, written backwards to ``out``: their number.
-
-    Twice the number of nodes suffices; returns 0 if ``out`` is too small.
-    """
-    count, node = 0, last
-    swept = rm.node_reals[node, NODE_ENTRY]
-    while True:
-        if count + 2 > out.shape[0]:
-            return 0
-        _pose(rm.orientations, rm.columns, rm.node_integers, node, swept, axis, out[count])
-        count += 1
-        if swept != rm.node_reals[node, NODE_ENTRY]:
-            _pose(rm.orientations, rm.columns, rm.node_integers, node, rm.node_reals[node, NODE_ENTRY], axis, out[count])
-            count += 1
-        parent = rm.node_integers[node, NODE_PARENT]
-        if parent < 0:
+def _append(path, count, pose):
+    """Add a pose unless it repeats the last one; returns the new count."""
+    if count > 0:
+        same = True
+        for m in range(7):
+            same = same and path[count - 1, m] == pose[m]
+        if same:
             return count
-        swept = rm.node_reals[node, NODE_LEAVE]
-        node = parent
+    path[count] = pose
+    return count + 1
+
+
+@kernel
+def path_room(rm, last):
+    """How many poses the path to node ``last`` and a goal can have at most."""
+    count, node = 1, last
+    while node >= 0:
+        count += 2
+        node = rm.node_integers[node, NODE_PARENT]
+    return count
+
+
+@kernel
+def trace(scene, rm, last, goal, goals, axis, path):
+    """Write the path from the start over node ``last`` to a goal to ``path``: its length.
+
+    Edges are proved already; the moves along intervals are proved here, once more than their ends
+    were. Returns 0 if one is refused, which only bodies of extreme shape can bring about.
+    """
+    ends = np.empty((2, 7))
+    # Links point backwards: turn them round, in the column that this query is done with.
+    node, after = last, -1
+    while node >= 0:
+        before = rm.node_integers[node, NODE_PARENT]
+        rm.node_integers[node, NODE_PARENT] = after
+        node, after = before, node
+    count, node = 0, after
+    while node >= 0:
+        following = rm.node_integers[node, NODE_PARENT]
+        entry = rm.node_reals[node, NODE_ENTRY]
+        leave = entry if following < 0 else rm.node_reals[following, NODE_LEAVE]
+        _pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
+        _pose(rm.orientations, rm.columns, rm.node_integers, node, leave, axis, ends[1])
+        if leave != entry and not _is_proved(scene, rm, ends):
+            return 0
+        count = _append(path, count, ends[0])
+        count = _append(path, count, ends[1])
+        node = following
+    for m in range(3):
+        ends[0, m] = goals[goal, 1 + m]
+    for m in range(4):
+        ends[0, 3 + m] = rm.orientations[int(goals[goal, 0]), m]
+    return _append(path, count, ends[0])

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ellipsoid_planning.cspace.poses import configurations_from_poses
 from ellipsoid_planning.kernels import roadmap
 from ellipsoid_planning.kernels.containers import EMPTY
-from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.roadmap.level import Level
+from ellipsoid_planning.robots.rigid import RigidRobot
 
 if TYPE_CHECKING:
     from ellipsoid_planning.roadmap.highway import HighwayRoadmap

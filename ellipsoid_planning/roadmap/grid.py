@@ -57,8 +57,9 @@ def _grid_neighbours(counts: list[int]) -> Indices:
     index = np.arange(math.prod(counts), dtype=np.int32).reshape(counts)
     found = []
     for k in range(len(counts)):
-        padded = np.pad(index, [(1, 1) if m == k else (0, 0) for m in range(len(counts))],
-                        constant_values=-1)
+        padded = np.pad(
+            index, [(1, 1) if m == k else (0, 0) for m in range(len(counts))], constant_values=-1
+        )
         below = np.take(padded, range(counts[k]), axis=k)
         above = np.take(padded, range(2, counts[k] + 2), axis=k)
         found += [below.ravel(), above.ravel()]

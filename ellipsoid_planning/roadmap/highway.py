@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from ellipsoid_planning.cspace.poses import configurations_from_poses
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.shortcut import shortcut
 from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns
 from ellipsoid_planning.roadmap.level import Level
-from ellipsoid_planning.roadmap.orientations import between, random_turn, spread_orientations
+from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 from ellipsoid_planning.roadmap.shorten import shorten
 
@@ -93,7 +94,7 @@ class HighwayRoadmap:
             status, path = level.solve(
                 begin, end, self.parameters.inflation, self._weight(), should_stop
             )
-            if status == roadmap.SOLVED and self._is_proved(path):
+            if status == roadmap.SOLVED:
                 outcome = self._solved(path, on_path)
                 if not self.parameters.anytime:
                     return outcome
@@ -139,10 +140,12 @@ class HighwayRoadmap:
             self.levels.append(self._new_level(len(self.levels)))
         level = self.levels[index]
         if self.cspace.rotates:
+            quaternions = np.empty((_BETWEEN, 4))
             for first in starts:
                 for last in goals:
-                    for quaternion in between(first[3:], last[3:], _BETWEEN):
-                        level.grid.layer_of(quaternion)
+                    if between(first[3:], last[3:], quaternions):
+                        for quaternion in quaternions:
+                            level.grid.layer_of(quaternion)
         return level
 
     def _new_level(self, index: int) -> Level:
@@ -187,7 +190,7 @@ class HighwayRoadmap:
             if should_stop():
                 return best
             status, path = level.solve(starts, goals, inflation, self._weight(), should_stop)
-            if status == roadmap.SOLVED and self._is_proved(path):
+            if status == roadmap.SOLVED:
                 best = self._better(best, self._shortened(path), on_path)
         while not should_stop():
             shorter = shorten(self.cspace, best, self._random, should_stop)
@@ -201,9 +204,7 @@ class HighwayRoadmap:
         shortcut(self.cspace.scene, path, kept)
         return path[kept]
 
-    def _better(
-        self, best: Array, path: Array, on_path: Callable[[Array], None] | None
-    ) -> Array:
+    def _better(self, best: Array, path: Array, on_path: Callable[[Array], None] | None) -> Array:
         if not self._length(path) < self._length(best):
             return best
         self._solved(path, on_path)
@@ -213,18 +214,18 @@ class HighwayRoadmap:
         robot = self.cspace.robot
         return path_length(robot, configurations_from_poses(robot, path))
 
+    def compile_kernels(self) -> None:
+        """Compile everything that a query can call, so that the next one's time is its own.
 
-def compile_kernels(cspace: CSpace) -> None:
-    """Compile everything that a query can call, so that the next one's time is its own."""
-    planner = HighwayRoadmap(cspace)
-    robot = cspace.robot
-    ends = np.zeros((2, robot.configuration_size))
-    ends[:, : robot.dimension] = [cspace.world.low, cspace.world.high]
-    if robot.rotates and robot.dimension == 3:
-        ends[:, -1] = 1.0
-    begin = cspace.poses(ends)
-    level = planner._level(0, begin[:1], begin[1:])
-    level.compile_kernels(begin)
-    path = np.repeat(begin[:1], 2, axis=0)
-    planner._is_proved(path)
-    planner._shortened(path)
+        For a planner made for this alone: it lays out the first level, and adds two ends to it.
+        """
+        robot, world = self.cspace.robot, self.cspace.world
+        ends = np.zeros((2, robot.configuration_size))
+        ends[:, : robot.dimension] = [world.low, world.high]
+        if robot.rotates and robot.dimension == 3:
+            ends[:, -1] = 1.0
+        poses = self.cspace.poses(ends)
+        self._level(0, poses[:1], poses[1:]).compile_kernels(poses)
+        path = np.repeat(poses[:1], 2, axis=0)
+        self._is_proved(path)
+        self._shortened(path)

@@ -61,7 +61,7 @@ class Level:
                 break
         if status != roadmap.SOLVED:
             return status, np.empty((0, 7))
-        return status, self._path(starts, goals)
+        return self._path(goal_rows)
 
     def _rows(self, ends: Array) -> Array:
         rows = [
@@ -70,18 +70,11 @@ class Level:
         ]
         return np.array(rows, dtype=float)
 
-    def _path(self, starts: Array, goals: Array) -> Array:
+    def _path(self, goals: Array) -> tuple[int, Array]:
         last, goal = divmod(int(self.tables.counters[roadmap.GOAL_REACHED]), len(goals))
-        room = 64
-        count = 0
-        while count == 0:
-            room *= 2
-            out = np.empty((room, 7))
-            count = roadmap.trace(self.tables, last, self.axis, out)
-        path = np.vstack([out[:count][::-1], goals[goal]])
-        # The start is reached exactly; rows repeat where a line is left where it was entered.
-        changed = np.any(np.diff(path, axis=0) != 0.0, axis=1)
-        return path[np.concatenate([[True], changed])]
+        path = np.empty((roadmap.path_room(self.tables, last), 7))
+        count = roadmap.trace(self._scene, self.tables, last, goal, goals, self.axis, path)
+        return (roadmap.SOLVED if count else roadmap.EXHAUSTED), path[:count]
 
     def compile_kernels(self, ends: Array) -> None:
         """Call every kernel of a query once, on two poses ``ends`` (2, 7), without searching."""
@@ -89,7 +82,8 @@ class Level:
         self.tables = grown(with_grid(self.tables, self.grid))
         roadmap.begin(self._scene, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
         roadmap.search(self._scene, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
-        roadmap.trace(self.tables, 0, self.axis, np.empty((0, 7)))
+        path = np.empty((roadmap.path_room(self.tables, -1) + 1, 7))
+        roadmap.trace(self._scene, self.tables, -1, 0, rows[1:], self.axis, path)
 
     @property
     def statistics(self) -> dict[str, int]:

@@ -27,7 +27,7 @@ def headings(count: int) -> Array:
 def icosahedral_rotations() -> Array:
     """The 60 rotations of the icosahedral group as quaternions (60, 4), one of each pair ±q."""
     golden = 0.5 * (1.0 + math.sqrt(5.0))
-    rows = [row for row in np.vstack([np.eye(4), -np.eye(4)])]
+    rows = list(np.vstack([np.eye(4), -np.eye(4)]))
     rows += [0.5 * np.array(s) for s in np.array(np.meshgrid(*[[1, -1]] * 4)).T.reshape(-1, 4)]
     even = [p for p in np.array(np.meshgrid(*[range(4)] * 4)).T.reshape(-1, 4) if _is_even(p)]
     for signs in np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).T.reshape(-1, 3):
@@ -72,19 +72,6 @@ def spread_orientations(dimension: int, count: int) -> Array:
         out = super_fibonacci(count)
     out.setflags(write=False)
     return out
-
-
-def between(first: Array, last: Array, count: int) -> Array:
-    """``count`` orientations evenly between two quaternions (4,), both excluded: (count, 4)."""
-    dot = float(first @ last)
-    last = -last if dot < 0.0 else last
-    angle = math.acos(min(abs(dot), 1.0))
-    if angle < 1e-6:
-        return np.empty((0, 4))
-    s = np.arange(1, count + 1)[:, None] / (count + 1)
-    return np.asarray(
-        (np.sin((1.0 - s) * angle) * first + np.sin(s * angle) * last) / math.sin(angle)
-    )
 
 
 def nearest(orientations: Array, targets: Array, count: int) -> NDArray[np.int32]:

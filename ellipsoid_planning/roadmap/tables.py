@@ -94,5 +94,7 @@ def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:
         columns=grid.columns,
         column_neighbours=grid.column_neighbours,
         placed=np.concatenate([tables.placed, more]) if new else tables.placed,
-        ready=np.concatenate([tables.ready, np.zeros(new, dtype=np.bool_)]) if new else tables.ready,
+        ready=np.concatenate([tables.ready, np.zeros(new, dtype=np.bool_)])
+        if new
+        else tables.ready,
     )

@@ -46,6 +46,6 @@ def working_with_kernels(message: str) -> Iterator[None]:
     from ellipsoid_planning.kernels.compile import is_compiled
 
     if not is_compiled():
-        say("Compiling the kernels for this machine; this happens once and takes about half a minute.")
+        say("Compiling the kernels for this machine, once; it takes about half a minute.")
     with working(message):
         yield

@@ -150,18 +150,16 @@ class HighwayRoadmap:
 
     def _new_level(self, index: int) -> Level:
         dimension, given = self.cspace.dimension, self.parameters
-        lines = given.lines or (24 if dimension == 2 else 10)
-        lines = round(lines * _MORE_LINES**index)
+        lines = round(given.line_count(dimension) * _MORE_LINES**index)
         columns, neighbours = grid_columns(self.cspace.world, self._axis, lines)
         if not self.cspace.rotates:
             orientations = np.empty((0, 4))
         else:
-            count = given.layers or (36 if dimension == 2 else 60)
-            orientations = spread_orientations(dimension, round(count * _MORE_LAYERS**index))
+            count = round(given.layer_count(dimension) * _MORE_LAYERS**index)
+            orientations = spread_orientations(dimension, count)
             if index > 0:
                 orientations = random_turn(orientations, dimension, self._random)
-        joined = given.neighbours or (4 if dimension == 2 else 12)
-        grid = Grid(columns, neighbours, orientations, joined)
+        grid = Grid(columns, neighbours, orientations, given.neighbour_count(dimension))
         return Level(self.cspace, grid, self._axis)
 
     def _is_proved(self, path: Array) -> bool:

@@ -53,6 +53,18 @@ class RoadmapParameters:
         if weight is not None and not 0.0 <= weight < math.inf:
             raise PlannerError(f"metric_weight: expected a number of at least 0, got {weight}")
 
+    def layer_count(self, dimension: int) -> int:
+        """Orientations of the first level in a world of ``dimension``."""
+        return self.layers or (36 if dimension == 2 else 60)
+
+    def line_count(self, dimension: int) -> int:
+        """Sweep lines of the first level along the longest side."""
+        return self.lines or (24 if dimension == 2 else 10)
+
+    def neighbour_count(self, dimension: int) -> int:
+        """Layers that each layer is joined to."""
+        return self.neighbours or (4 if dimension == 2 else 12)
+
     def checked_axis(self, dimension: int) -> int:
         """The swept axis in a world of ``dimension``.
 

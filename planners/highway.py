@@ -18,6 +18,7 @@ from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 
 from . import bindings
 from .spaces import StateAccess, state_access
+from .validity import EllipsoidValidityChecker
 
 Statuses = ob.PlannerStatus.PlannerStatusType
 _OPTIONAL = type(None)
@@ -29,13 +30,13 @@ def cspace_of(si: ob.SpaceInformation) -> CSpace:
     Raises:
         PlannerError: the checker is not the plug-in's.
     """
-    cspace = getattr(si.getStateValidityChecker(), "cspace", None)
-    if not isinstance(cspace, CSpace):
+    checker = si.getStateValidityChecker()
+    if not isinstance(checker, EllipsoidValidityChecker):
         raise PlannerError(
             "HighwayRoadmap needs the plug-in's EllipsoidValidityChecker in its SpaceInformation;"
             " install it with planners.setup.install(si, cspace)"
         )
-    return cspace
+    return checker.cspace
 
 
 class HighwayRoadmap(ob.Planner):
@@ -137,7 +138,7 @@ class HighwayRoadmap(ob.Planner):
         Raises:
             PlannerError: a value is out of its range, or there is no such axis.
         """
-        self._parameters().checked_axis(cspace_of(self.getSpaceInformation()).dimension)
+        self._current().prepare()
 
     def clear(self) -> None:
         """Forget the roadmap and the query."""

@@ -1,31 +1,57 @@
-"""Columns and layers that come with starts and goals, joined to those that are there."""
+"""Who neighbours whom: layers of a grid, and columns and layers that starts and goals bring."""
 
 import math
 
+import numpy as np
+
 from .compile import kernel
+
+# First entry of a layer's row of neighbours that has not been looked for yet.
+UNKNOWN = -2
 
 
 @kernel
-def _link(neighbours, row, other):
-    """Enter ``other`` in a row of neighbours; where it is full, in place of a late entry."""
+def find_nearest(orientations, neighbours, layer, own, joined):
+    """Enter the nearest ``joined`` of the first ``own`` layers in the row of ``layer``."""
+    p = orientations[layer]
+    distances = np.full(joined, math.inf)
+    neighbours[layer, :joined] = -1
+    for other in range(own):
+        q = orientations[other]
+        distance = 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
+        if other == layer or distance >= distances[joined - 1]:
+            continue
+        k = joined - 1
+        while k > 0 and distances[k - 1] > distance:
+            distances[k], neighbours[layer, k] = distances[k - 1], neighbours[layer, k - 1]
+            k -= 1
+        distances[k], neighbours[layer, k] = distance, other
+
+
+@kernel
+def _link(neighbours, row, first, other):
+    """Enter ``other`` in a row from place ``first`` on; where it is full, for a late entry."""
     width = neighbours.shape[1]
-    for k in range(width):
+    for k in range(first, width):
         if neighbours[row, k] < 0 or neighbours[row, k] == other:
             neighbours[row, k] = other
             return
-    neighbours[row, width - 1 - other % (width // 4)] = other
+    neighbours[row, width - 1 - other % ((width - first + 3) // 4)] = other
 
 
 @kernel
-def _join_nearest(distances, neighbours, new, count):
-    """Join row ``new`` both ways to the ``count`` rows before it of least distance."""
+def _join_nearest(distances, neighbours, new, count, first):
+    """Join row ``new`` both ways to the ``count`` rows before it of least distance.
+
+    Their own rows take it from place ``first`` on.
+    """
     for _ in range(min(count, new)):
         best = 0
         for k in range(1, new):
             if distances[k] < distances[best]:
                 best = k
-        _link(neighbours, new, best)
-        _link(neighbours, best, new)
+        _link(neighbours, new, 0, best)
+        _link(neighbours, best, first, new)
         distances[best] = math.inf
 
 
@@ -42,7 +68,7 @@ def find_column(columns, neighbours, count, distances, x, y, z):
         if distances[k] == 0.0:
             return k
     columns[count, 0], columns[count, 1], columns[count, 2] = x, y, z
-    _join_nearest(distances, neighbours, count, 4)
+    _join_nearest(distances, neighbours, count, 4, 0)
     return count
 
 
@@ -59,7 +85,7 @@ def find_layer(orientations, neighbours, count, distances, q, joined):
             return k
     for m in range(4):
         orientations[count, m] = q[m]
-    _join_nearest(distances, neighbours, count, joined)
+    _join_nearest(distances, neighbours, count, joined, joined)
     return count
 
 

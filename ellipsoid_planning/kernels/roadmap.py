@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from .compile import kernel
 from .containers import EMPTY, lookup, pop, push, store
+from .grid import UNKNOWN, find_nearest
 from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT, new_placed
 from .lines import CAPACITY, free_intervals
 from .motion import prove_motion
@@ -42,7 +43,12 @@ EXPANSIONS = 7
 LAYERS_PLACED = 8
 QUERY = 9
 GOAL_REACHED = 10
-COUNTERS = 11
+# Layers of the grid itself, and to how many of them each layer is joined.
+OWN_LAYERS = 11
+JOINED = 12
+# The last entry that was taken out and can be used again, or −1; each links to the one before.
+FREE_ENTRY = 13
+COUNTERS = 14
 
 # Node columns of the integer table
 NODE_LAYER = 0
@@ -71,7 +77,8 @@ class Roadmap(NamedTuple):
 
     Attributes:
         orientations: quaternions of the layers (L, 4).
-        layer_neighbours: rows (L, K) of layers, filled up with −1.
+        layer_neighbours: rows (L, K) of layers, filled up with −1; the grid's own neighbours of
+            a layer are looked for when it is first expanded.
         columns: base positions (C, 3), swept coordinate 0.
         column_neighbours: rows (C, D) of columns, filled up with −1.
         placed: parts of each layer (L, k, PLACED), base at the origin.
@@ -88,9 +95,9 @@ class Roadmap(NamedTuple):
     """
 
     orientations: NDArray[np.float64]
-    layer_neighbours: NDArray[np.int32]
+    layer_neighbours: NDArray[np.int64]
     columns: NDArray[np.float64]
-    column_neighbours: NDArray[np.int32]
+    column_neighbours: NDArray[np.int64]
     placed: NDArray[np.float64]
     ready: NDArray[np.bool_]
     whitening: NDArray[np.float64]
@@ -310,8 +317,12 @@ def _open(rm, priority, cost, leave, target, parent, line):
 
 @kernel
 def _add_entry(counters, heap, items, reals, integers, priority, cost, leave, target, parent, line):
-    entry = counters[ENTRIES]
-    counters[ENTRIES] += 1
+    entry = counters[FREE_ENTRY]
+    if entry >= 0:
+        counters[FREE_ENTRY] = integers[entry, 0]
+    else:
+        entry = counters[ENTRIES]
+        counters[ENTRIES] += 1
     reals[entry, 0], reals[entry, 1] = cost, leave
     integers[entry, 0] = target
     integers[entry, 1] = parent
@@ -373,11 +384,14 @@ def _expand(rm, node, axis, goals, inflation, weight):
     """Promise every line next to ``node``."""
     layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
     for k in range(rm.column_neighbours.shape[1]):
-        other = int(rm.column_neighbours[column, k])
+        other = rm.column_neighbours[column, k]
         if other >= 0:
             _promise(rm, node, layer, other, axis, goals, inflation, weight)
+    if rm.layer_neighbours[layer, 0] == UNKNOWN:
+        own, joined = rm.counters[OWN_LAYERS], rm.counters[JOINED]
+        find_nearest(rm.orientations, rm.layer_neighbours, layer, own, joined)
     for k in range(rm.layer_neighbours.shape[1]):
-        other = int(rm.layer_neighbours[layer, k])
+        other = rm.layer_neighbours[layer, k]
         if other >= 0:
             _promise(rm, node, other, column, axis, goals, inflation, weight)
     rm.counters[EXPANSIONS] += 1
@@ -409,6 +423,7 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
     intervals = np.empty((CAPACITY, 2))
     rm.counters[QUERY] += 1
     rm.counters[ENTRIES] = 0
+    rm.counters[FREE_ENTRY] = -1
     rm.counters[OPEN] = 0
     rm.counters[GOAL_REACHED] = -1
     for k in range(starts.shape[0]):
@@ -455,13 +470,15 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
         item = pop(rm.heap, rm.heap_items, rm.counters[OPEN])
         rm.counters[OPEN] -= 1
         node, parent = rm.entry_integers[item, 0], rm.entry_integers[item, 1]
+        line = rm.entry_integers[item, 2]
+        cost, leave = rm.entry_reals[item, 0], rm.entry_reals[item, 1]
+        rm.entry_integers[item, 0] = rm.counters[FREE_ENTRY]
+        rm.counters[FREE_ENTRY] = item
         if node < 0:
-            line = rm.entry_integers[item, 2]
             _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals)
             continue
         if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
             continue
-        cost, leave = rm.entry_reals[item, 0], rm.entry_reals[item, 1]
         if parent < 0:
             _reach(rm, node, -1, leave, leave, 0.0)
         else:

@@ -96,7 +96,7 @@ def _nodes(intervals: list[Array]) -> tuple[Indices, Array]:
     return line_of, np.concatenate(intervals).reshape(-1, 2)
 
 
-def _pairs_of_columns(layers: int, neighbours: NDArray[np.int32]) -> Indices:
+def _pairs_of_columns(layers: int, neighbours: Indices) -> Indices:
     """Neighbouring lines (k, 2) within each of the layers."""
     column, place = np.nonzero(neighbours > np.arange(len(neighbours))[:, None])
     pairs = np.column_stack([column, neighbours[column, place]])
@@ -117,13 +117,13 @@ def _pairs_of_layers(layers: Array, joined: int, columns: int) -> Indices:
 def _overlapping(lines: Indices, line_of: Indices, bounds: Array) -> Indices:
     """Pairs of nodes (k, 2) whose intervals overlap, on the given pairs of lines."""
     first, last = np.searchsorted(line_of, lines), np.searchsorted(line_of, lines, side="right")
-    pairs = [np.empty((0, 2), dtype=np.int64)]
+    pairs: list[Indices] = [np.empty((0, 2), dtype=np.int64)]
     # Few intervals share a line: pair their j-th and k-th over all lines at once.
     most = (last - first).max(axis=0, initial=0)
     for j in range(most[0]):
         for k in range(most[1]):
             there = (first[:, 0] + j < last[:, 0]) & (first[:, 1] + k < last[:, 1])
-            pairs.append(first[there] + [j, k])
+            pairs.append(first[there] + np.array([j, k]))
     a, b = np.concatenate(pairs).T
     low = np.maximum(bounds[a, 0], bounds[b, 0])
     high = np.minimum(bounds[a, 1], bounds[b, 1])

@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.kernels.grid import find_column, find_layer
-from ellipsoid_planning.roadmap.orientations import nearest
+from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.kernels.grid import UNKNOWN, find_column, find_layer
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int32]
+Indices = NDArray[np.int64]
 
 # Places in each row of neighbours, and rows, for the columns and layers of starts and goals.
 QUERY_ROOM = 16
 SPARE_ROWS = 64
+# A line's key has room for 2²⁰ columns; those of starts and goals come on top of the grid's.
+MOST_COLUMNS = 1 << 18
 
 
 def swept_box(world: World) -> tuple[Array, Array]:
@@ -32,16 +34,30 @@ def swept_box(world: World) -> tuple[Array, Array]:
     return low, np.maximum(low, high)
 
 
+def most_lines(dimension: int) -> int:
+    """How many lines a side every world of ``dimension`` has room for."""
+    return MOST_COLUMNS if dimension == 2 else math.isqrt(MOST_COLUMNS)
+
+
 def grid_columns(world: World, axis: int, lines: int) -> tuple[Array, Indices]:
     """Columns (C, 3) of a regular grid across ``axis``, and their neighbours (C, 2 (n − 1)).
 
     ``lines`` stand along the longer side, at the middles of equal cells; shorter sides have as
     many as keep the cells square.
+
+    Raises:
+        PlannerError: if there would be more than MOST_COLUMNS.
     """
     low, high = swept_box(world)
     across = [k for k in range(world.dimension) if k != axis]
-    cell = max(float(high[k] - low[k]) for k in across) / lines
-    counts = [max(1, math.ceil((high[k] - low[k]) / cell - 1e-9)) for k in across]
+    widest = max(float(high[k] - low[k]) for k in across)
+    shares = [(high[k] - low[k]) / widest if widest > 0.0 else 0.0 for k in across]
+    counts = [max(1, math.ceil(share * lines - 1e-9)) for share in shares]
+    if math.prod(counts) > MOST_COLUMNS:
+        raise PlannerError(
+            f"lines: {lines} a side make {math.prod(counts)} lines, at most {MOST_COLUMNS} are"
+            " possible; the roadmap is refined where it needs to be"
+        )
     places = [
         low[k] + (np.arange(count) + 0.5) * (high[k] - low[k]) / count
         for k, count in zip(across, counts, strict=True)
@@ -54,7 +70,7 @@ def grid_columns(world: World, axis: int, lines: int) -> tuple[Array, Indices]:
 
 
 def _grid_neighbours(counts: list[int]) -> Indices:
-    index = np.arange(math.prod(counts), dtype=np.int32).reshape(counts)
+    index = np.arange(math.prod(counts), dtype=np.int64).reshape(counts)
     found = []
     for k in range(len(counts)):
         padded = np.pad(
@@ -63,7 +79,7 @@ def _grid_neighbours(counts: list[int]) -> Indices:
         below = np.take(padded, range(counts[k]), axis=k)
         above = np.take(padded, range(2, counts[k] + 2), axis=k)
         found += [below.ravel(), above.ravel()]
-    return np.column_stack(found).astype(np.int32)
+    return np.column_stack(found).astype(np.int64)
 
 
 class Grid:
@@ -75,8 +91,11 @@ class Grid:
         columns: (≥ C, 3), the swept coordinate 0.
         column_neighbours: (≥ C, D), filled up with −1.
         orientations: quaternions of the layers (≥ L, 4).
-        layer_neighbours: (≥ L, K), filled up with −1.
+        layer_neighbours: (≥ L, K), filled up with −1; the rows of the grid's own layers are
+            looked for when the search first needs them (kernels.grid.find_nearest).
         column_count, layer_count: C and L.
+        own_layers, joined: how many layers the grid began with, and to how many of them each is
+            joined.
     """
 
     def __init__(
@@ -87,9 +106,10 @@ class Grid:
         self.columns = _with_spare_rows(columns, 0.0)
         self.column_neighbours = _with_spare_rows(_with_room(column_neighbours), -1)
         self.orientations = _with_spare_rows(orientations, 0.0)
-        table = _layer_neighbours(orientations, neighbours)
-        self.layer_neighbours = _with_spare_rows(_with_room(table), -1)
-        self._neighbours = neighbours
+        self.own_layers = len(orientations)
+        self.joined = min(neighbours, len(orientations) + QUERY_ROOM)
+        unknown = np.full((len(orientations), self.joined), UNKNOWN, dtype=np.int64)
+        self.layer_neighbours = _with_spare_rows(_with_room(unknown), -1)
         self._distances = np.empty(max(len(self.columns), len(self.orientations)))
 
     def column_of(self, position: Array, axis: int) -> int:
@@ -118,28 +138,14 @@ class Grid:
             self.layer_count,
             self._distances,
             orientation,
-            self._neighbours,
+            self.joined,
         )
         self.layer_count = max(self.layer_count, found + 1)
         return int(found)
 
 
-def _layer_neighbours(orientations: Array, count: int) -> Indices:
-    # The table of a well spread set serves every planner that uses the set.
-    key = (orientations.tobytes(), count)
-    if key not in _KNOWN_NEIGHBOURS:
-        table = nearest(orientations, orientations, count + 1)
-        own = np.arange(len(orientations), dtype=np.int32)[:, None]
-        _KNOWN_NEIGHBOURS.clear()
-        _KNOWN_NEIGHBOURS[key] = np.where(table == own, np.int32(-1), table)
-    return _KNOWN_NEIGHBOURS[key]
-
-
-_KNOWN_NEIGHBOURS: dict[tuple[bytes, int], Indices] = {}
-
-
 def _with_room(table: Indices) -> Indices:
-    room = np.full((len(table), QUERY_ROOM), -1, dtype=np.int32)
+    room = np.full((len(table), QUERY_ROOM), -1, dtype=np.int64)
     return np.hstack([table, room])
 
 

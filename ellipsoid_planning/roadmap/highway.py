@@ -15,10 +15,10 @@ from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.shortcut import shortcut
 from ellipsoid_planning.metric import path_length
-from ellipsoid_planning.roadmap.grid import Grid, grid_columns
+from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
-from ellipsoid_planning.roadmap.parameters import RoadmapParameters
+from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
 from ellipsoid_planning.roadmap.shorten import shorten
 
 Array = NDArray[np.float64]
@@ -83,11 +83,12 @@ class HighwayRoadmap:
         """
         begin, end = self.cspace.poses(starts), self.cspace.poses(goals)
         for first in begin:
-            for last in end:
-                direct = np.vstack([first, last])
-                if self._is_proved(direct):
-                    self._direct += 1
-                    return self._solved(direct, on_path)
+            direct = self._direct_motion(first, end)
+            if direct is not None:
+                self._direct += 1
+                return self._solved(direct, on_path)
+            if should_stop():
+                return Outcome(TIMEOUT)
         best: Array | None = None
         for index in range(self.parameters.refine + 1):
             level = self._level(index, begin, end)
@@ -150,22 +151,26 @@ class HighwayRoadmap:
 
     def _new_level(self, index: int) -> Level:
         dimension, given = self.cspace.dimension, self.parameters
-        lines = round(given.line_count(dimension) * _MORE_LINES**index)
+        lines = given.line_count(dimension)
+        if index > 0:
+            lines = min(round(lines * _MORE_LINES**index), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(self.cspace.world, self._axis, lines)
         if not self.cspace.rotates:
             orientations = np.empty((0, 4))
         else:
-            count = round(given.layer_count(dimension) * _MORE_LAYERS**index)
+            count = min(round(given.layer_count(dimension) * _MORE_LAYERS**index), MOST_LAYERS)
             orientations = spread_orientations(dimension, count)
             if index > 0:
                 orientations = random_turn(orientations, dimension, self._random)
         grid = Grid(columns, neighbours, orientations, given.neighbour_count(dimension))
         return Level(self.cspace, grid, self._axis)
 
-    def _is_proved(self, path: Array) -> bool:
-        counts = np.empty(len(path) - 1, dtype=np.int64)
-        motions_are_free(self.cspace.scene, path[:-1], path[1:], counts)
-        return bool(np.all(counts > 0))
+    def _direct_motion(self, start: Array, goals: Array) -> Array | None:
+        """The motion (2, 7) to the first goal that it is proved free to, or None."""
+        counts = np.empty(len(goals), dtype=np.int64)
+        motions_are_free(self.cspace.scene, np.tile(start, (len(goals), 1)), goals, counts)
+        reached = np.flatnonzero(counts > 0)
+        return np.vstack([start, goals[reached[0]]]) if len(reached) else None
 
     def _solved(self, path: Array, on_path: Callable[[Array], None] | None) -> Outcome:
         configurations = configurations_from_poses(self.cspace.robot, path)
@@ -183,7 +188,7 @@ class HighwayRoadmap:
         on_path: Callable[[Array], None] | None,
     ) -> Array:
         """Better paths by lower inflations and by shortening, until told to stop."""
-        best = self._shortened(best)
+        best = self._better(best, self._shortened(best), on_path)
         for inflation in _LOWER_INFLATIONS:
             if should_stop():
                 return best
@@ -224,6 +229,5 @@ class HighwayRoadmap:
             ends[:, -1] = 1.0
         poses = self.cspace.poses(ends)
         self._level(0, poses[:1], poses[1:]).compile_kernels(poses)
-        path = np.repeat(poses[:1], 2, axis=0)
-        self._is_proved(path)
-        self._shortened(path)
+        self._direct_motion(poses[0], poses[:1])
+        self._shortened(np.repeat(poses[:1], 2, axis=0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -10,12 +11,15 @@ from numpy.typing import NDArray
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap
 from ellipsoid_planning.roadmap.grid import Grid
-from ellipsoid_planning.roadmap.tables import grown, new_tables, with_grid
+from ellipsoid_planning.roadmap.tables import grown, new_tables, warm_up_growth, with_grid
 
 Array = NDArray[np.float64]
 
-# Steps of the search between two looks at the clock: about 2 ms.
-_BURST = 256
+# Steps of the search between two looks at the clock, at first and at most, and how long they
+# should take.
+_FIRST_BURST = 64
+_LONGEST_BURST = 1024
+_BURST_SECONDS = 3e-3
 
 
 class Level:
@@ -47,18 +51,23 @@ class Level:
         are no poses unless SOLVED.
         """
         start_rows, goal_rows = self._rows(starts), self._rows(goals)
-        self.tables = grown(with_grid(self.tables, self.grid))
+        self.tables = grown(with_grid(self.tables, self.grid), len(starts))
         status = roadmap.begin(
             self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
         )
+        steps = _FIRST_BURST
         while status in (roadmap.SEARCHING, roadmap.GROW):
             if status == roadmap.GROW:
                 self.tables = grown(self.tables)
+            began = time.perf_counter()
             status = roadmap.search(
-                self._scene, self.tables, goal_rows, self.axis, inflation, metric_weight, _BURST
+                self._scene, self.tables, goal_rows, self.axis, inflation, metric_weight, steps
             )
             if status == roadmap.SEARCHING and should_stop():
                 break
+            # A step may take a microsecond or, among thousands of bodies, a hundredth of a second.
+            late = time.perf_counter() - began > _BURST_SECONDS
+            steps = max(steps // 4, 1) if late else min(2 * steps, _LONGEST_BURST)
         if status != roadmap.SOLVED:
             return status, np.empty((0, 7))
         return self._path(goal_rows)
@@ -82,6 +91,7 @@ class Level:
         self.tables = grown(with_grid(self.tables, self.grid))
         roadmap.begin(self._scene, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
         roadmap.search(self._scene, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
+        warm_up_growth()
         path = np.empty((roadmap.path_room(self.tables, -1) + 1, 7))
         roadmap.trace(self._scene, self.tables, -1, 0, rows[1:], self.axis, path)
 

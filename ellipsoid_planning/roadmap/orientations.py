@@ -74,13 +74,13 @@ def spread_orientations(dimension: int, count: int) -> Array:
     return out
 
 
-def nearest(orientations: Array, targets: Array, count: int) -> NDArray[np.int32]:
+def nearest(orientations: Array, targets: Array, count: int) -> NDArray[np.int64]:
     """Indices (m, count) of the orientations nearest to each row of ``targets`` (m, 4).
 
     Filled up with −1 where there are fewer; a target itself, if listed, is among them.
     """
     count_there = min(count, len(orientations))
-    out = np.full((len(targets), count), -1, dtype=np.int32)
+    out = np.full((len(targets), count), -1, dtype=np.int64)
     for first in range(0, len(targets), 512):
         rows = slice(first, first + 512)
         closeness = np.abs(targets[rows] @ orientations.T)

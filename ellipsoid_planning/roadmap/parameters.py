@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from dataclasses import dataclass
+from numbers import Integral, Real
 
 from ellipsoid_planning.errors import PlannerError
+
+MOST_LAYERS = 100_000
+# Name, least and most of the integers that may be left to the planner.
+_CHOICES = (
+    ("layers", 1, MOST_LAYERS),
+    ("lines", 1, 1 << 18),
+    ("axis", 0, 2),
+    ("neighbours", 1, 1000),
+)
 
 
 @dataclass(frozen=True)
@@ -13,12 +23,13 @@ class RoadmapParameters:
     """How fine the roadmap is and how it is searched; None leaves a choice to the planner.
 
     Attributes:
-        layers: orientations of the first level; 60 in space (the icosahedral group), 36 in the
-            plane.
+        layers: orientations of the first level, at most 100,000; 60 in space (the icosahedral
+            group), 36 in the plane.
         lines: sweep lines of the first level along the longest side that they stand across;
             10 in space, 24 in the plane.
         axis: the swept axis, 0 for x; the last one by default.
-        neighbours: layers that each layer is joined to; 12 in space, 4 in the plane.
+        neighbours: layers that each layer is joined to, at most 1000; 12 in space, 4 in the
+            plane.
         inflation: weight of the heuristic in the first search, at least 1; larger is greedier.
         refine: how many times an exhausted roadmap is replaced by a finer one; 0 for never.
         anytime: improve the path until the time is over.
@@ -41,17 +52,24 @@ class RoadmapParameters:
     metric_weight: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("layers", "lines", "neighbours"):
-            value = getattr(self, name)
-            if value is not None and value < 1:
-                raise PlannerError(f"{name}: expected an integer of at least 1, got {value}")
-        if self.refine < 0:
-            raise PlannerError(f"refine: expected an integer of at least 0, got {self.refine}")
-        if not 1.0 <= self.inflation < math.inf:
-            raise PlannerError(f"inflation: expected a number of at least 1, got {self.inflation}")
-        weight = self.metric_weight
-        if weight is not None and not 0.0 <= weight < math.inf:
-            raise PlannerError(f"metric_weight: expected a number of at least 0, got {weight}")
+        for name, least, most in _CHOICES:
+            if getattr(self, name) is not None:
+                self._check(name, Integral, least, most)
+        self._check("refine", Integral, 0)
+        self._check("seed", Integral, 0)
+        self._check("inflation", Real, 1)
+        if self.metric_weight is not None:
+            self._check("metric_weight", Real, 0)
+        if not isinstance(self.anytime, bool):
+            raise PlannerError(f"anytime: expected true or false, got {self.anytime!r}")
+
+    def _check(self, name: str, kind: type, least: int, most: float = sys.float_info.max) -> None:
+        value = getattr(self, name)
+        fits = isinstance(value, kind) and not isinstance(value, bool)
+        if not fits or not least <= value <= most:
+            noun = "an integer" if kind is Integral else "a number"
+            reach = f"from {least} to {most}" if isinstance(most, int) else f"of at least {least}"
+            raise PlannerError(f"{name}: expected {noun} {reach}, got {value!r}")
 
     def layer_count(self, dimension: int) -> int:
         """Orientations of the first level in a world of ``dimension``."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.kernels import layout, motion, roadmap, whitening
 from ellipsoid_planning.kernels.containers import EMPTY, rehash
+from ellipsoid_planning.kernels.lines import CAPACITY
 from ellipsoid_planning.kernels.roadmap import Roadmap
 from ellipsoid_planning.roadmap.grid import Grid
 
@@ -23,6 +24,8 @@ def _map(size: int) -> NDArray[np.int64]:
 def new_tables(grid: Grid, parts: int) -> Roadmap:
     """Empty tables for the columns and layers of ``grid`` and a robot of ``parts`` parts."""
     workspace, placed, stack = motion.motion_workspaces()
+    counters = np.zeros(roadmap.COUNTERS, dtype=np.int64)
+    counters[[roadmap.OWN_LAYERS, roadmap.JOINED]] = grid.own_layers, grid.joined
     return Roadmap(
         orientations=grid.orientations,
         layer_neighbours=grid.layer_neighbours,
@@ -42,7 +45,7 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         heap_items=np.empty(4 * _ROWS, dtype=np.int64),
         entry_reals=np.empty((4 * _ROWS, 2)),
         entry_integers=np.empty((4 * _ROWS, 3), dtype=np.int64),
-        counters=np.zeros(roadmap.COUNTERS, dtype=np.int64),
+        counters=counters,
         motion=workspace,
         motion_placed=placed,
         motion_stack=stack,
@@ -50,29 +53,38 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
 
 
 def _longer(array: NDArray[Any], used: int) -> NDArray[Any]:
-    """``array``, or twice as long with the same beginning if more than 3/8 of it is used."""
-    if 8 * used <= 3 * len(array):
+    """``array``, or longer with the same beginning if more than 3/8 of it is used."""
+    size = _enough(len(array), used)
+    if size == len(array):
         return array
-    out = np.zeros((2 * len(array), *array.shape[1:]), dtype=array.dtype)
+    out = np.empty((size, *array.shape[1:]), dtype=array.dtype)
     out[: len(array)] = array
     return out
 
 
 def _larger_map(table: NDArray[np.int64], used: int) -> NDArray[np.int64]:
-    if 8 * used <= 3 * table.shape[1]:
+    size = _enough(table.shape[1], used)
+    if size == table.shape[1]:
         return table
-    larger = _map(2 * table.shape[1])
+    larger = _map(size)
     rehash(table, larger)
     return larger
 
 
-def grown(tables: Roadmap) -> Roadmap:
-    """``tables`` with more room wherever it runs short."""
+def _enough(size: int, used: int) -> int:
+    while 8 * used > 3 * size:
+        size *= 2
+    return size
+
+
+def grown(tables: Roadmap, starts: int = 0) -> Roadmap:
+    """``tables`` with more room wherever it runs short, for a step or a query of ``starts``."""
     used = tables.counters
-    nodes, edges = int(used[roadmap.NODES]), int(used[roadmap.EDGES])
-    entries = int(used[roadmap.ENTRIES])
+    nodes, edges = int(used[roadmap.NODES]) + starts * CAPACITY, int(used[roadmap.EDGES])
+    branches = tables.column_neighbours.shape[1] + tables.layer_neighbours.shape[1]
+    entries = max(int(used[roadmap.ENTRIES]), starts) + branches
     return tables._replace(
-        lines=_larger_map(tables.lines, int(used[roadmap.LINES])),
+        lines=_larger_map(tables.lines, int(used[roadmap.LINES]) + starts),
         edges=_larger_map(tables.edges, edges),
         node_integers=_longer(tables.node_integers, nodes),
         node_reals=_longer(tables.node_reals, nodes),
@@ -82,6 +94,11 @@ def grown(tables: Roadmap) -> Roadmap:
         entry_reals=_longer(tables.entry_reals, entries),
         entry_integers=_longer(tables.entry_integers, entries),
     )
+
+
+def warm_up_growth() -> None:
+    """Compile what :func:`grown` calls."""
+    rehash(_map(2), _map(2))
 
 
 def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:

@@ -248,11 +248,13 @@ def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: _Request) -> N
     write_configuration(state, request.scenario.start, request.cspace)
     si.isValid(state)
     si.checkMotion(state, state)
+    if isinstance(request.entry, OwnPlanner):
+        if hasattr(planner, "warm_up"):
+            planner.warm_up()
+        return
     sampler = si.allocValidStateSampler()
     sampler.sampleNear(state, state, 1e-3)
     sampler.sample(state)
-    if hasattr(planner, "warm_up"):
-        planner.warm_up()
 
 
 def _result(request: _Request, run: _Run) -> PlanResult:

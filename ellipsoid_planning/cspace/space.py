@@ -18,7 +18,7 @@ from ellipsoid_planning.world import World
 Array = NDArray[np.float64]
 
 _CLEARANCE_SAMPLES = 33
-_CLEARANCE_PROOFS = 14
+_CLEARANCE_PROOFS = 60
 
 
 class CSpace:

@@ -64,7 +64,8 @@ def draw(source: Scenario | PlanResult) -> Figure:
     view = LayerSlice(cspace, narrowest, _across(scenario))
     drawn, panels = _blank(scenario, [_panel_height(view), DISTANCE_HEIGHT])
     _draw_panels(panels, scenario, trajectory, view, "narrowest place")
-    draw_clearance(panels[2], trajectory.travelled, distances, cspace.clearance_required)
+    required, proved = cspace.clearance_required, path.min_clearance if path.certified else None
+    draw_clearance(panels[2], trajectory.travelled, distances, required, proved)
     return drawn
 
 

@@ -71,18 +71,32 @@ def _without_literals(dispatcher: Any) -> Any:
     return dispatcher
 
 
+def _compiled(function: Callable[..., Any], inline: str) -> Any:
+    # The folder is read when the function is decorated; restoring it leaves other users of numba
+    # in this process alone.
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        options = {"error_model": "numpy", "fastmath": False, "inline": inline}
+        return _without_literals(numba.njit(cache=True, **options)(function))
+    finally:
+        numba.config.CACHE_DIR = previous
+
+
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile ``function`` lazily with numba, cached in :data:`CACHE_FOLDER`.
 
     ``fastmath`` stays off because certificates rest on IEEE rounding; the numpy error model makes
     divisions by zero give infinities instead of exceptions.
     """
-    # The folder is read when the function is decorated; restoring it leaves other users of numba
-    # in this process alone.
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(CACHE_FOLDER)
-    try:
-        compiled = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
-        return _without_literals(compiled)
-    finally:
-        numba.config.CACHE_DIR = previous
+    return _compiled(function, "never")
+
+
+def step(function: Callable[..., Any]) -> Any:
+    """As :func:`kernel`, for a function that is one step of the kernel that calls it.
+
+    It becomes a part of its caller. Numba optimises everything that a function calls anew for
+    each function above it, so that a chain of calls costs its length in compiling time; this
+    keeps chains short.
+    """
+    return _compiled(function, "always")

@@ -11,8 +11,10 @@ EMPTY = -1
 def _slot(keys, key):
     """Index of ``key``, or of the free slot where it belongs; the size is a power of two."""
     mask = keys.shape[0] - 1
-    mixed = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
-    slot = np.int64(mixed >> np.uint64(20)) & mask
+    # Keys are made of two numbers, one in the high bits: both have to count.
+    folded = np.uint64(key) ^ (np.uint64(key) >> np.uint64(29))
+    mixed = folded * np.uint64(0x9E3779B97F4A7C15)
+    slot = np.int64(mixed >> np.uint64(32)) & mask
     while keys[slot] != EMPTY and keys[slot] != key:
         slot = (slot + 1) & mask
     return slot

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .compile import kernel
+from .compile import kernel, step
 
 # First entry of a layer's row of neighbours that has not been looked for yet.
 UNKNOWN = -2
@@ -14,8 +14,10 @@ UNKNOWN = -2
 def find_nearest(orientations, neighbours, layer, own, joined):
     """Enter the nearest ``joined`` of the first ``own`` layers in the row of ``layer``."""
     p = orientations[layer]
-    distances = np.full(joined, math.inf)
-    neighbours[layer, :joined] = -1
+    distances = np.empty(joined)
+    for k in range(joined):
+        distances[k] = math.inf
+        neighbours[layer, k] = -1
     for other in range(own):
         q = orientations[other]
         distance = 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
@@ -28,7 +30,7 @@ def find_nearest(orientations, neighbours, layer, own, joined):
         distances[k], neighbours[layer, k] = distance, other
 
 
-@kernel
+@step
 def _link(neighbours, row, first, other):
     """Enter ``other`` in a row from place ``first`` on; where it is full, for a late entry."""
     width = neighbours.shape[1]

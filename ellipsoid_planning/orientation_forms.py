@@ -50,8 +50,8 @@ def unit_quaternion(quaternion: ArrayLike) -> NDArray[np.float64]:
     length = float(np.linalg.norm(values))
     if not abs(length - 1.0) <= UNIT_TOLERANCE:
         raise GeometryError(
-            f"expected a unit quaternion [x, y, z, w], got {_plain(values)} of length {length:.6g}; "
-            "divide it by its length"
+            f"expected a unit quaternion [x, y, z, w], got {_plain(values)} "
+            f"of length {length:.6g}; divide it by its length"
         )
     return values if abs(length - 1.0) <= UNIT_ROUNDING else values / length
 

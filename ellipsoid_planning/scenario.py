@@ -142,7 +142,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
     from ellipsoid_planning.scenario_files import locate, read_document
 
     data, origin = read_document(locate(path_or_name))
-    return Scenario._from_document(data, origin)
+    return Scenario._from_document(data, origin)  # noqa: SLF001 (same module)
 
 
 def bundled_scenarios() -> dict[str, Path]:

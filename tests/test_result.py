@@ -100,7 +100,7 @@ def test_wrong_entries_are_named(tmp_path, keys, value, words):
     assert str(file) in str(caught.value)
 
 
-def test_missing_entries_are_named(tmp_path):
+def test_missing_entries_are_named():
     for key in ("format", "scenario", "planner", "status", "time", "path", "statistics"):
         document = json.loads(solved().to_json())
         del document[key]
@@ -111,7 +111,7 @@ def test_missing_entries_are_named(tmp_path):
 @pytest.mark.parametrize("text", ["", "{", "[1]", "3", "[" * 100000])
 def test_files_that_are_no_result(tmp_path, text):
     (tmp_path / "bad.json").write_text(text)
-    with pytest.raises(ResultError, match="bad.json"):
+    with pytest.raises(ResultError, match=r"bad\.json"):
         load_result(tmp_path / "bad.json")
 
 

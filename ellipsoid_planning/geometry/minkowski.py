@@ -39,7 +39,8 @@ def minkowski_sum_boundary(
     """Return the boundary points (m, n) of the sum with the given outward normals.
 
     Args:
-        first, second: two ellipsoids of one dimension n, in one frame.
+        first: an ellipsoid of dimension n.
+        second: another of the same dimension, in the same frame.
         directions: outward normals (m, n) of any positive length, or how many evenly
             spread ones to take.
 
@@ -74,7 +75,8 @@ def minkowski_sum_boundary_by_offset(
     """Return the boundary points (m, n) of the sum by thesis eq. (5.11)-(5.17).
 
     Args:
-        first, second: two ellipsoids of one dimension n, in one frame.
+        first: an ellipsoid of dimension n.
+        second: another of the same dimension, in the same frame.
         parameters: unit vectors (m, n), (cos u sin v, sin u sin v, cos v) in (5.11), or how
             many evenly spread ones to take.
     """

@@ -59,14 +59,17 @@ def quaternion_from_rotation(rotation: ArrayLike) -> NDArray[np.float64]:
     """Return the unit quaternion (x, y, z, w), w >= 0, of a (3, 3) rotation."""
     m = np.asarray(rotation, dtype=float)
     # Each row is the quaternion times one of its own entries; the longest is the accurate one.
+    xx, yy, zz = m[0, 0], m[1, 1], m[2, 2]
+    xy, xz, yz = m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1]
+    x, y, z = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
     rows = np.array(
         [
-            [1 + m[0, 0] - m[1, 1] - m[2, 2], m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[2, 1] - m[1, 2]],
-            [m[0, 1] + m[1, 0], 1 - m[0, 0] + m[1, 1] - m[2, 2], m[1, 2] + m[2, 1], m[0, 2] - m[2, 0]],
-            [m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], 1 - m[0, 0] - m[1, 1] + m[2, 2], m[1, 0] - m[0, 1]],
-            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1 + m[0, 0] + m[1, 1] + m[2, 2]],
+            [1 + xx - yy - zz, xy, xz, x],
+            [xy, 1 - xx + yy - zz, yz, y],
+            [xz, yz, 1 - xx - yy + zz, z],
+            [x, y, z, 1 + xx + yy + zz],
         ]
-    )  # fmt: skip
+    )
     lengths = np.linalg.norm(rows, axis=1)
     longest = int(np.argmax(lengths))
     quaternion: NDArray[np.float64] = rows[longest] / lengths[longest]

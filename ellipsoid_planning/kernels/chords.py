@@ -12,7 +12,7 @@ sum crosses the line, computed from the bodies themselves: an outer end, whateve
 
 import math
 
-from .compile import kernel, step
+from .compile import inlined, kernel
 from .layout import (
     BODY_CENTRE,
     BODY_EXTENT,
@@ -31,7 +31,7 @@ MISS = 0
 HIT = 1
 
 
-@step
+@inlined
 def _section(table, row, lam, p0, p1, p2, w0, w1, w2):
     """Coefficients (α, β, γ) of αt² + 2βt + γ for E_λ, with the centre at the origin."""
     alpha, beta, gamma = 0.0, 0.0, 0.0
@@ -137,7 +137,7 @@ def crossing(bodies, j, placed, i, clearance, cx, cy, cz, axis, ux, uy, uz):
     return (support - (ux * cx + uy * cy + uz * cz)) / slope, slope
 
 
-@step
+@inlined
 def _sharpen(bodies, j, placed, i, clearance, cx, cy, cz, axis, sign, ux, uy, uz):
     """Newton steps for the plane that crosses the line earliest (convex in u at fixed u·e)."""
     a0, a1, a2, a3, a4, a5 = shape_matrix(bodies, j, BODY_MATRIX)
@@ -238,7 +238,7 @@ def obstacle_chord(bodies, j, placed, i, table, row, clearance, tolerance, axis,
     return HIT, ends_low, ends_high
 
 
-@step
+@inlined
 def _misses(bodies, j, placed, i, keep, cx, cy, cz, axis, ux, uy, uz):
     """Whether a plane parallel to the line separates it from the C-obstacle by ``keep``."""
     if axis == 0:
@@ -277,7 +277,7 @@ def _pull(mu, q0, q1, q2, s0, s1, s2):
     return s0 * e0 * e0 + s1 * e1 * e1 + s2 * e2 * e2
 
 
-@step
+@inlined
 def _deepest(limit, p0, p1, p2, w0, w1, w2, s0, s1, s2):
     """Some (found, μ, t) where the family is at most ``limit`` on the line.
 

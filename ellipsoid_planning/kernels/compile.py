@@ -92,7 +92,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     return _compiled(function, "never")
 
 
-def step(function: Callable[..., Any]) -> Any:
+def inlined(function: Callable[..., Any]) -> Any:
     """As :func:`kernel`, for a function that is one step of the kernel that calls it.
 
     It becomes a part of its caller. Numba optimises everything that a function calls anew for

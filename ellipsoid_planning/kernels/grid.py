@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .compile import kernel, step
+from .compile import inlined, kernel
 
 # First entry of a layer's row of neighbours that has not been looked for yet.
 UNKNOWN = -2
@@ -30,7 +30,7 @@ def find_nearest(orientations, neighbours, layer, own, joined):
         distances[k], neighbours[layer, k] = distance, other
 
 
-@step
+@inlined
 def _link(neighbours, row, first, other):
     """Enter ``other`` in a row from place ``first`` on; where it is full, for a late entry."""
     width = neighbours.shape[1]

@@ -8,7 +8,7 @@ obstacles first, then arenas. ``keys`` tells whose row it is at present, −1 fo
 
 from .broad_phase import next_overlap
 from .chords import HIT, arena_chord, obstacle_chord
-from .compile import kernel, step
+from .compile import inlined, kernel
 from .containment import inverse_size
 from .layout import (
     BODY_WHITEN,
@@ -29,7 +29,7 @@ from .whitening import whiten
 CAPACITY = 64
 
 
-@step
+@inlined
 def _split(intervals, count, k, low, high):
     """Replace interval ``k`` by its parts below ``low`` and above ``high``."""
     if count == intervals.shape[0]:
@@ -80,7 +80,7 @@ def _whitened_row(bodies, j, placed, i, key, table, keys, scratch):
     return row
 
 
-@step
+@inlined
 def _arena_interval(arenas, scene, placed, base, table, keys, scratch, columns, axis, x, y, z):
     """Where all parts are inside all arenas and bounds: (low, high), empty if low > high."""
     low, high = scene[LOW + axis], scene[HIGH + axis]

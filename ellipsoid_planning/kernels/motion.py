@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from .broad_phase import next_overlap
-from .compile import kernel, step
+from .compile import inlined, kernel
 from .containment import GROW_PART, SHRINK_ARENA, arena_extent, inverse_size
 from .layout import (
     BODY_CENTRE,
@@ -126,7 +126,7 @@ def _reach(value, slope, bend):
     return 0.999999 * 2.0 * value / (root - slope)
 
 
-@step
+@inlined
 def _pair_is_free(obstacles, j, parts, i, motion, required, placed, stack):
     """Prove one pair along the whole motion: number of proofs, or its negative if refused."""
     lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
@@ -270,7 +270,7 @@ def _set_motion(motion, first, move, turn, ax, ay, az, angle):
     motion[10], motion[11], motion[12], motion[13] = ax, ay, az, angle
 
 
-@step
+@inlined
 def _small_turn_is_free(scene, first, last, move, axis, angle, clearance, motion, placed, stack):
     """Everything OMPL may do at a tiny rotation: hold either orientation, turn, or jump."""
     ax, ay, az = axis

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .compile import kernel, step
+from .compile import inlined, kernel
 from .containers import EMPTY, lookup, pop, push, store
 from .grid import UNKNOWN, find_nearest
 from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT, new_placed
@@ -203,7 +203,7 @@ def line_nodes(scene, rm, layer, column, axis, intervals):
     return first, count
 
 
-@step
+@inlined
 def node_at(scene, rm, layer, column, swept, axis, intervals):
     """The line's node whose interval is nearest to ``swept``, or −1 if the line is blocked."""
     first, count = line_nodes(scene, rm, layer, column, axis, intervals)
@@ -237,7 +237,7 @@ def _crossing(nodes, a, b, entry, choice):
     return swept, swept, True
 
 
-@step
+@inlined
 def _is_proved(scene, rm, ends):
     """Whether the motion between the two poses ``ends`` is proved free."""
     proofs = prove_motion(
@@ -246,7 +246,7 @@ def _is_proved(scene, rm, ends):
     return proofs > 0
 
 
-@step
+@inlined
 def _middle_is_free(scene, ends, placed):
     """Whether the robot is free half-way, which most long motions that are not free show."""
     first, last = ends[0], ends[1]
@@ -269,7 +269,7 @@ def _middle_is_free(scene, ends, placed):
     return placed_is_free(scene, placed)
 
 
-@step
+@inlined
 def _prove_edge(scene, rm, a, b, entry, axis, ends):
     """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
     key = (min(a, b) << NODE_BITS) | max(a, b)
@@ -298,7 +298,7 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
     return za, zb, proved
 
 
-@step
+@inlined
 def _open(rm, priority, cost, leave, target, parent, line):
     _add_entry(
         rm.counters,
@@ -348,7 +348,7 @@ def _promise(rm, node, layer, column, axis, goals, inflation, weight):
     _open(rm, cost + inflation * ahead, cost, entry, -1, node, line)
 
 
-@step
+@inlined
 def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals):
     """Look at a promised line: open the edges from ``parent`` to its nodes."""
     layer, column = line // COLUMN_STRIDE, line % COLUMN_STRIDE
@@ -370,7 +370,7 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
         _open(rm, cost + inflation * ahead, cost, za, node, parent, line)
 
 
-@step
+@inlined
 def _reach(rm, node, parent, leave, entry, cost):
     rm.node_integers[node, NODE_STAMP] = rm.counters[QUERY]
     rm.node_integers[node, NODE_PARENT] = parent
@@ -379,7 +379,7 @@ def _reach(rm, node, parent, leave, entry, cost):
     rm.node_reals[node, NODE_LEAVE] = leave
 
 
-@step
+@inlined
 def _expand(rm, node, axis, goals, inflation, weight):
     """Promise every line next to ``node``."""
     layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
@@ -397,7 +397,7 @@ def _expand(rm, node, axis, goals, inflation, weight):
     rm.counters[EXPANSIONS] += 1
 
 
-@step
+@inlined
 def _meets_goal(scene, rm, node, axis, goals, ends, placed):
     """The goal to which the direct motion from ``node`` is proved free, or −1."""
     entry = rm.node_reals[node, NODE_ENTRY]
@@ -438,7 +438,7 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
     return SEARCHING if rm.counters[OPEN] > 0 else EXHAUSTED
 
 
-@step
+@inlined
 def _has_room(rm):
     """Whether every table has room for one more step of the search."""
     counters = rm.counters

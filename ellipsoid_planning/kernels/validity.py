@@ -3,7 +3,7 @@
 import math
 
 from .broad_phase import next_overlap
-from .compile import kernel, step
+from .compile import inlined, kernel
 from .containment import GROW_PART, SHRINK_ARENA, arena_extent
 from .layout import (
     BODY_CENTRE,
@@ -42,7 +42,7 @@ def in_bounds(scene, x, y, z):
     )
 
 
-@step
+@inlined
 def in_arena(arenas, a, placed, i, scene):
     """Whether part ``i`` provably keeps the scene's clearance inside arena ``a``."""
     clearance, planar = scene[CLEARANCE], scene[DIMENSION] == 2.0

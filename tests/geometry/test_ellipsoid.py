@@ -22,7 +22,7 @@ axis_lengths = st.floats(0.01, 100.0)
 coordinates = st.floats(-50.0, 50.0)
 unit_quaternions = (
     st.tuples(*[st.floats(-1.0, 1.0)] * 4)
-    .filter(lambda q: 0.1 < math.hypot(*q))
+    .filter(lambda q: math.hypot(*q) > 0.1)
     .map(lambda q: np.array(q) / math.hypot(*q))
 )
 

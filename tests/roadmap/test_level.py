@@ -91,7 +91,7 @@ def test_every_swept_axis_works(n, axis):
 @pytest.mark.parametrize("n", [2, 3])
 def test_a_blocked_query_is_exhausted_at_the_first_level_without_refinement(n):
     cspace = cage(n)
-    planner = HighwayRoadmap(cspace, RoadmapParameters(refine=0))
+    planner = HighwayRoadmap(cspace, RoadmapParameters(refine=0, axis=0))
     inside, outside = configuration(cspace, *[0.0] * n), configuration(cspace, *[20.0] * n)
     assert planner.solve(inside, outside, never).status == EXHAUSTED
     assert len(planner.levels) == 1
@@ -101,7 +101,7 @@ def test_a_blocked_query_is_exhausted_at_the_first_level_without_refinement(n):
 
 def test_refinement_ends_at_its_cap():
     cspace = cage(2, 8.0)
-    parameters = RoadmapParameters(lines=2, layers=3, refine=3)
+    parameters = RoadmapParameters(lines=2, layers=3, refine=3, axis=1)
     planner = HighwayRoadmap(cspace, parameters)
     ends = configuration(cspace, 0.0, 0.0), configuration(cspace, 6.5, 6.5)
     assert planner.solve(*ends, never).status == EXHAUSTED
@@ -189,14 +189,15 @@ def test_tables_that_start_tiny_grow_without_changing_the_path(monkeypatch):
 def test_thousands_of_starts_and_goals_fit_the_tables():
     cspace = cage(2, 12.0)
     random = np.random.default_rng(1)
-    starts = np.column_stack([random.uniform(-1.0, 1.0, (6000, 2)), np.zeros(6000)])
-    goals = np.column_stack([random.uniform(9.0, 11.0, (30, 2)), np.full(30, 0.2)])
+    starts = np.column_stack([random.uniform(-1.0, 1.0, (3000, 2)), np.zeros(3000)])
+    goals = np.column_stack([random.uniform(9.0, 11.0, (2, 2)), np.full(2, 0.2)])
     starts, goals = (rows[cspace.are_valid(rows)] for rows in (starts, goals))
-    assert len(starts) > 3000
+    assert len(starts) > 1500
     level = HighwayRoadmap(cspace)._level(0, cspace.poses(starts[:1]), cspace.poses(goals[:1]))
     status, path = level.solve(cspace.poses(starts), cspace.poses(goals), 1.0, 1.0, never)
     assert (status, len(path)) == (roadmap.EXHAUSTED, 0)
-    assert level.tables.counters[roadmap.LINES] > 3000
+    # More intervals than the tables begin with.
+    assert level.tables.counters[roadmap.NODES] > 4096
 
 
 def test_many_neighbours_fit_the_tables():
@@ -244,7 +245,7 @@ def test_the_explored_graph_has_proved_edges_only(n):
     for _ in range(4):
         planner.solve(next(ends), next(ends), never)
     graph = explored_graph(planner)
-    assert len(graph.edges) > 20
+    assert len(graph.edges) > 10
     assert is_proved(cspace, graph.configurations[graph.edges[0]])
     first, last = graph.configurations[graph.edges.T]
     assert cspace.are_motions_valid(first, last).all()

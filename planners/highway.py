@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import traceback
 from typing import Any, ClassVar
 
@@ -67,6 +66,8 @@ class HighwayRoadmap(ob.Planner):
         "metric_weight": (float, int, _OPTIONAL),
     }
 
+    _warm: ClassVar[bool] = False
+
     def __init__(self, si: ob.SpaceInformation) -> None:
         """Create a planner; the scene is looked up in ``si`` when it solves."""
         super().__init__(si, "HighwayRoadmap")
@@ -74,7 +75,6 @@ class HighwayRoadmap(ob.Planner):
             setattr(self, name, value)
         self.error: str | None = None
         self._roadmap: highway.HighwayRoadmap | None = None
-        self._search_time = 0.0
 
     def solve(self, ptc: ob.PlannerTerminationCondition) -> ob.PlannerStatus:
         """Plan until a path is found, nothing is left to try, or ``ptc`` holds.
@@ -91,7 +91,6 @@ class HighwayRoadmap(ob.Planner):
             return ob.PlannerStatus(Statuses.CRASH)
 
     def _solve(self, ptc: ob.PlannerTerminationCondition) -> Any:
-        began = time.perf_counter()
         roadmap = self._current()
         access = state_access(roadmap.cspace)
         starts = bindings.start_configurations(self, access)
@@ -105,7 +104,6 @@ class HighwayRoadmap(ob.Planner):
             self._add_path(path, access)
 
         outcome = roadmap.solve(starts, goals, ptc, add)
-        self._search_time = time.perf_counter() - began
         if outcome.status == highway.SOLVED:
             return Statuses.EXACT_SOLUTION
         # Exhausted at the finest resolution allowed is no proof that there is no path.
@@ -128,8 +126,14 @@ class HighwayRoadmap(ob.Planner):
         return kept
 
     def setup(self) -> None:
-        """Lay out the first level's lines and layers, which depend on no query."""
+        """Lay out the first level's lines and layers, which depend on no query.
+
+        The first planner of a process also loads the kernels, or compiles them on a machine that
+        has not yet run them, which takes about half a minute.
+        """
         super().setup()
+        if not HighwayRoadmap._warm:
+            self.warm_up()
         self._current().prepare()
 
     def check_parameters(self) -> None:
@@ -151,7 +155,9 @@ class HighwayRoadmap(ob.Planner):
 
     def warm_up(self) -> None:
         """Compile every kernel that a solve can call, leaving the planner as it was."""
-        highway.HighwayRoadmap(cspace_of(self.getSpaceInformation())).compile_kernels()
+        cspace = cspace_of(self.getSpaceInformation())
+        highway.HighwayRoadmap(cspace).compile_kernels()
+        HighwayRoadmap._warm = True
 
     @property
     def statistics(self) -> dict[str, Any]:

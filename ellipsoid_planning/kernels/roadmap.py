@@ -20,6 +20,7 @@ from .compile import inlined, kernel
 from .containers import EMPTY, lookup, pop, push, store
 from .grid import UNKNOWN, find_nearest
 from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT, new_placed
+from .linear import norm
 from .lines import CAPACITY, free_intervals
 from .motion import prove_motion
 from .placement import place
@@ -70,6 +71,8 @@ COLUMN_STRIDE = 1 << 20
 # A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
 LINE_BASE = 128
 NODE_BITS = 31
+# Rise over run beyond which intervals that do not overlap are not worth trying to join.
+_STEEPEST = 3.0
 
 
 class Roadmap(NamedTuple):
@@ -348,6 +351,19 @@ def _promise(rm, node, layer, column, axis, goals, inflation, weight):
     _open(rm, cost + inflation * ahead, cost, entry, -1, node, line)
 
 
+@kernel
+def _apart(nodes, a, b):
+    """Length of the gap between the intervals of two nodes; negative where they overlap."""
+    return max(nodes[b, NODE_LOW] - nodes[a, NODE_HIGH], nodes[a, NODE_LOW] - nodes[b, NODE_HIGH])
+
+
+@kernel
+def _across(columns, a, b):
+    """Distance of two columns."""
+    dx, dy = columns[a, 0] - columns[b, 0], columns[a, 1] - columns[b, 1]
+    return norm(dx, dy, columns[a, 2] - columns[b, 2])
+
+
 @inlined
 def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals):
     """Look at a promised line: open the edges from ``parent`` to its nodes."""
@@ -359,7 +375,11 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
             continue
         za, zb, exists = _crossing(rm.node_reals, parent, node, entry, 0)
         if not exists:
+            # Intervals that do not overlap are joined aslant, unless that would be steep.
             if layer != rm.node_integers[parent, NODE_LAYER]:
+                continue
+            other = rm.node_integers[parent, NODE_COLUMN]
+            if _apart(rm.node_reals, parent, node) > _STEEPEST * _across(rm.columns, other, column):
                 continue
             za, zb, exists = _crossing(rm.node_reals, parent, node, entry, 3)
         cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)

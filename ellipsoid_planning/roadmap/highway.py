@@ -65,6 +65,8 @@ class HighwayRoadmap:
         self.parameters = parameters or RoadmapParameters()
         self.levels: list[Level] = []
         self._axis = self.parameters.checked_axis(cspace.dimension)
+        self._axes = cspace.dimension if self.parameters.axis is None else 1
+        self._weight = self._metric_weight()
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
 
@@ -90,22 +92,20 @@ class HighwayRoadmap:
             if should_stop():
                 return Outcome(TIMEOUT)
         best: Array | None = None
-        for index in range(self.parameters.refine + 1):
+        for index in range((self.parameters.refine + 1) * self._axes):
             level = self._level(index, begin, end)
-            status, path = level.solve(
-                begin, end, self.parameters.inflation, self._weight(), should_stop
-            )
+            inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
+            status, path = level.solve(begin, end, inflation, self._weight, should_stop)
             if status == roadmap.SOLVED:
-                outcome = self._solved(path, on_path)
                 if not self.parameters.anytime:
-                    return outcome
-                best = self._improve(level, begin, end, path, should_stop, on_path)
-                break
+                    return self._solved(path, on_path)
+                best = self._better(best, path, on_path)
+                best = self._improve(level, begin, end, best, should_stop, on_path)
             if should_stop():
-                return Outcome(TIMEOUT)
-        if best is None:
-            return Outcome(EXHAUSTED)
-        return Outcome(SOLVED, configurations_from_poses(self.cspace.robot, best))
+                break
+        if best is not None:
+            return Outcome(SOLVED, configurations_from_poses(self.cspace.robot, best))
+        return Outcome(TIMEOUT if should_stop() else EXHAUSTED)
 
     def prepare(self) -> None:
         """Make the first level, which depends on no query; :meth:`solve` does it if need be."""
@@ -127,7 +127,7 @@ class HighwayRoadmap:
                 total[name] = total.get(name, 0) + count
         return total
 
-    def _weight(self) -> float:
+    def _metric_weight(self) -> float:
         if self.parameters.metric_weight is not None:
             return self.parameters.metric_weight
         reach = [
@@ -150,11 +150,17 @@ class HighwayRoadmap:
         return level
 
     def _new_level(self, index: int) -> Level:
+        """Level ``index``: the axes take turns at each resolution, unless one was asked for.
+
+        So a scene that one axis suits costs at most n times what it costs with that axis.
+        """
         dimension, given = self.cspace.dimension, self.parameters
+        index, turn = divmod(index, self._axes)
+        axis = (self._axis - turn) % dimension
         lines = given.line_count(dimension)
         if index > 0:
             lines = min(round(lines * _MORE_LINES**index), max(lines, most_lines(dimension)))
-        columns, neighbours = grid_columns(self.cspace.world, self._axis, lines)
+        columns, neighbours = grid_columns(self.cspace.world, axis, lines)
         if not self.cspace.rotates:
             orientations = np.empty((0, 4))
         else:
@@ -163,7 +169,7 @@ class HighwayRoadmap:
             if index > 0:
                 orientations = random_turn(orientations, dimension, self._random)
         grid = Grid(columns, neighbours, orientations, given.neighbour_count(dimension))
-        return Level(self.cspace, grid, self._axis)
+        return Level(self.cspace, grid, axis)
 
     def _direct_motion(self, start: Array, goals: Array) -> Array | None:
         """The motion (2, 7) to the first goal that it is proved free to, or None."""
@@ -187,12 +193,12 @@ class HighwayRoadmap:
         should_stop: Callable[[], bool],
         on_path: Callable[[Array], None] | None,
     ) -> Array:
-        """Better paths by lower inflations and by shortening, until told to stop."""
+        """Better paths by lower inflations and by shortening, while that helps."""
         best = self._better(best, self._shortened(best), on_path)
         for inflation in _LOWER_INFLATIONS:
             if should_stop():
                 return best
-            status, path = level.solve(starts, goals, inflation, self._weight(), should_stop)
+            status, path = level.solve(starts, goals, inflation, self._weight, should_stop)
             if status == roadmap.SOLVED:
                 best = self._better(best, self._shortened(path), on_path)
         while not should_stop():
@@ -207,8 +213,10 @@ class HighwayRoadmap:
         shortcut(self.cspace.scene, path, kept)
         return path[kept]
 
-    def _better(self, best: Array, path: Array, on_path: Callable[[Array], None] | None) -> Array:
-        if not self._length(path) < self._length(best):
+    def _better(
+        self, best: Array | None, path: Array, on_path: Callable[[Array], None] | None
+    ) -> Array:
+        if best is not None and not self._length(path) < self._length(best):
             return best
         self._solved(path, on_path)
         return path
@@ -229,5 +237,6 @@ class HighwayRoadmap:
             ends[:, -1] = 1.0
         poses = self.cspace.poses(ends)
         self._level(0, poses[:1], poses[1:]).compile_kernels(poses)
+        self.cspace.is_valid(ends[0])
         self._direct_motion(poses[0], poses[:1])
         self._shortened(np.repeat(poses[:1], 2, axis=0))

@@ -27,7 +27,8 @@ class RoadmapParameters:
             group), 36 in the plane.
         lines: sweep lines of the first level along the longest side that they stand across;
             10 in space, 24 in the plane.
-        axis: the swept axis, 0 for x; the last one by default.
+        axis: the swept axis, 0 for x; by default the axes take turns at each resolution, the last
+            one first.
         neighbours: layers that each layer is joined to, at most 1000; 12 in space, 4 in the
             plane.
         inflation: weight of the heuristic in the first search, at least 1; larger is greedier.

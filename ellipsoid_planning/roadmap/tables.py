@@ -103,6 +103,8 @@ def warm_up_growth() -> None:
 
 def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:
     """``tables`` for the same grid after columns or layers were added to it."""
+    if tables.columns is grid.columns and tables.orientations is grid.orientations:
+        return tables
     new = len(grid.orientations) - len(tables.ready)
     more = np.empty((new, *tables.placed.shape[1:]))
     return tables._replace(

@@ -66,7 +66,8 @@ class HighwayRoadmap(ob.Planner):
         "metric_weight": (float, int, _OPTIONAL),
     }
 
-    _warm: ClassVar[bool] = False
+    # The values of ``anytime`` whose kernels this process has loaded.
+    _warm: ClassVar[set[bool]] = set()
 
     def __init__(self, si: ob.SpaceInformation) -> None:
         """Create a planner; the scene is looked up in ``si`` when it solves."""
@@ -132,7 +133,7 @@ class HighwayRoadmap(ob.Planner):
         has not yet run them, which takes about half a minute.
         """
         super().setup()
-        if not HighwayRoadmap._warm:
+        if self.anytime not in HighwayRoadmap._warm:
             self.warm_up()
         self._current().prepare()
 
@@ -156,8 +157,8 @@ class HighwayRoadmap(ob.Planner):
     def warm_up(self) -> None:
         """Compile every kernel that a solve can call, leaving the planner as it was."""
         cspace = cspace_of(self.getSpaceInformation())
-        highway.HighwayRoadmap(cspace).compile_kernels()
-        HighwayRoadmap._warm = True
+        highway.HighwayRoadmap(cspace, self._parameters()).compile_kernels()
+        HighwayRoadmap._warm.add(self.anytime)
 
     @property
     def statistics(self) -> dict[str, Any]:

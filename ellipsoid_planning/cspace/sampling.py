@@ -1,4 +1,4 @@
-"""Drawing only free configurations, with no collision check (design 3.7)."""
+"""Drawing only free configurations, with no collision check."""
 
 from __future__ import annotations
 

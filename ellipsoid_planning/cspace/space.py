@@ -94,6 +94,8 @@ class CSpace:
 
     def explain(self, configuration: ArrayLike) -> tuple[Contact, ...]:
         """Everything that makes a configuration (d,) invalid; empty if it is valid."""
+        if self.is_valid(configuration):
+            return ()
         values = np.asarray(configuration, dtype=float)
         pose = self.poses(values)[0]
         contacts = bound_contacts(self.world, values[: self.dimension])

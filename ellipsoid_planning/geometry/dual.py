@@ -1,4 +1,4 @@
-"""Separation, containment and chords of two ellipsoids by the dual kernels (design 3.1, 3.2).
+"""Separation, containment and chords of two ellipsoids by the dual kernels.
 
 Every value errs on the safe side: a gap is a lower bound of the distance, an extent in an arena
 is an upper bound, a blocked chord is outer and a free chord inner, by a few roundings.

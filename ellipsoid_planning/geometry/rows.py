@@ -26,7 +26,7 @@ def _embedded(body: Ellipsoid, third_axis: float) -> tuple[Array, Array, Array]:
 def grown_axes(semi_axes: Array, distance: float) -> Array:
     """Semi-axes of an ellipsoid that encloses the body's offset by ``distance``.
 
-    The member (1 + 1/p)Σ + (1 + p)r²I of the Kurzhanski family (design 3.1), p near its best.
+    The member (1 + 1/p)Σ + (1 + p)r²I of the Kurzhanski family, p near its best.
     """
     if distance <= 0.0:
         return semi_axes
@@ -37,7 +37,7 @@ def grown_axes(semi_axes: Array, distance: float) -> Array:
 def shrunk_axes(semi_axes: Array, distance: float) -> Array:
     """Semi-axes of the largest known ellipsoid inside the body's inner offset by ``distance``.
 
-    The family (1 − μ)(Σ − r²I/μ) of design 3.2; μ is searched for the largest volume.
+    The family (1 − μ)(Σ − r²I/μ) of Kurzhanski and Vályi (1997), at the μ of largest volume.
 
     Raises:
         GeometryError: if the inner offset is empty.

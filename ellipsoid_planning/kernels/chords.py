@@ -1,7 +1,7 @@
 """Chords: where a line of base positions meets a C-obstacle, or stays inside an arena.
 
-In whitened coordinates (see whitening) the families of design 3.1 and 3.2 along p(t) = p₀ + t w are
-Σ m_k p_k(t)² ≤ 1 with
+In whitened coordinates (see whitening) two families of ellipsoids (Kurzhanski and Vályi 1997), one
+around the sum and one inside the difference, along p(t) = p₀ + t w are Σ m_k p_k(t)² ≤ 1 with
 
 - obstacle: m_k = λ(1−λ)/((1−λ) + s_k λ); the blocked interval is the intersection over λ;
 - arena: μ + Σ p_k² μ/(μ − s_k) ≤ 1; the free interval is the union over μ.
@@ -75,7 +75,7 @@ def _normal(table, row, lam, p0, p1, p2):
 def _tightest(table, row, lam, sign, p0, p1, p2, w0, w1, w2):
     """Best λ for the end ``sign`` of the chord: (λ, t, hit); no hit: t is the closest point.
 
-    A bracketed secant in the odds κ = λ/(1−λ) for κ = inner/outer; the fixed point of design 3.1
+    A bracketed secant in the odds κ = λ/(1−λ) for κ = inner/outer; the fixed point κ ← inner/outer
     starts it, and bisection of the odds takes over where the secant leaves the bracket.
     """
     low, high = 0.0, math.inf

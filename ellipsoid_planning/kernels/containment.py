@@ -1,4 +1,4 @@
-"""Containment of a robot part in an arena ellipsoid, with its margin (design 3.2).
+"""Containment of a robot part in an arena ellipsoid, with its margin (thesis 5.2.2).
 
 In the arena's own coordinates (v ↦ A_a⁻¹v, the arena becomes the unit ball) the part is w + Ez,
 |z| ≤ 1. For any μ above the largest eigenvalue of S = EEᵀ,
@@ -24,7 +24,7 @@ from .layout import (
     PLACED_MATRIX,
     ROUNDING,
 )
-from .linear import norm, solve_positive, times, transposed_times
+from .linear import gram, norm, solve_positive, times, transposed_times
 
 _STEPS = 80
 GROW_PART = 0
@@ -114,12 +114,7 @@ def extent_in_arena(arenas, a, placed, i, scale, inverse, converge):
     point that reaches farthest.
     """
     e0, e1, e2, e3, e4, e5, e6, e7, e8, wx, wy, wz = _in_arena(arenas, a, placed, i, inverse)
-    s0 = e0 * e0 + e1 * e1 + e2 * e2
-    s1 = e0 * e3 + e1 * e4 + e2 * e5
-    s2 = e0 * e6 + e1 * e7 + e2 * e8
-    s3 = e3 * e3 + e4 * e4 + e5 * e5
-    s4 = e3 * e6 + e4 * e7 + e5 * e8
-    s5 = e6 * e6 + e7 * e7 + e8 * e8
+    s0, s1, s2, s3, s4, s5 = gram(e0, e1, e2, e3, e4, e5, e6, e7, e8)
     error = 2.0 * ROUNDING * (1.0 + inverse_size(arenas, a, inverse) * scale)
     reach = norm(wx, wy, wz) + math.sqrt(s0 + s3 + s5)
     if not converge and reach + error <= 1.0:
@@ -134,12 +129,7 @@ def extent_in_arena(arenas, a, placed, i, scale, inverse, converge):
 def extent_with_clearance(arenas, a, placed, i, scale, clearance, planar, converge):
     """g of part ``i`` grown by ``clearance``: an upper bound over the best p of a few."""
     e0, e1, e2, e3, e4, e5, e6, e7, e8, wx, wy, wz = _in_arena(arenas, a, placed, i, BODY_INVERSE)
-    s0 = e0 * e0 + e1 * e1 + e2 * e2
-    s1 = e0 * e3 + e1 * e4 + e2 * e5
-    s2 = e0 * e6 + e1 * e7 + e2 * e8
-    s3 = e3 * e3 + e4 * e4 + e5 * e5
-    s4 = e3 * e6 + e4 * e7 + e5 * e8
-    s5 = e6 * e6 + e7 * e7 + e8 * e8
+    s0, s1, s2, s3, s4, s5 = gram(e0, e1, e2, e3, e4, e5, e6, e7, e8)
     k = BODY_INVERSE
     # The ball of a planar body is a disc: no column for z.
     flat = 0.0 if planar else 1.0

@@ -32,11 +32,8 @@ def times(rows, i, first, x, y, z):
 
 
 @kernel
-def shape_matrix(rows, i, first):
-    """Σ = A Aᵀ as (xx, xy, xz, yy, yz, zz)."""
-    a, b, c = rows[i, first], rows[i, first + 1], rows[i, first + 2]
-    d, e, f = rows[i, first + 3], rows[i, first + 4], rows[i, first + 5]
-    g, h, k = rows[i, first + 6], rows[i, first + 7], rows[i, first + 8]
+def gram(a, b, c, d, e, f, g, h, k):
+    """A Aᵀ of the row-major matrix A as (xx, xy, xz, yy, yz, zz)."""
     return (
         a * a + b * b + c * c,
         a * d + b * e + c * f,
@@ -44,6 +41,22 @@ def shape_matrix(rows, i, first):
         d * d + e * e + f * f,
         d * g + e * h + f * k,
         g * g + h * h + k * k,
+    )
+
+
+@kernel
+def shape_matrix(rows, i, first):
+    """Σ = A Aᵀ of the row-major matrix A that starts at ``rows[i, first]``, as :func:`gram`."""
+    return gram(
+        rows[i, first],
+        rows[i, first + 1],
+        rows[i, first + 2],
+        rows[i, first + 3],
+        rows[i, first + 4],
+        rows[i, first + 5],
+        rows[i, first + 6],
+        rows[i, first + 7],
+        rows[i, first + 8],
     )
 
 

@@ -1,4 +1,4 @@
-"""Certified motion: proofs that a whole motion is free, in continuous time (design 3.3).
+"""Certified motion: proofs that a whole motion is free, in continuous time.
 
 Position is linear and rotation about a fixed axis in s from 0 to 1, as OMPL interpolates.
 

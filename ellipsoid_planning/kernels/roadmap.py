@@ -1,4 +1,4 @@
-"""The highway roadmap and its lazy search (design 3.5), all in one loop.
+"""The highway roadmap and its lazy search (thesis 6.3), all in one loop.
 
 *Layers* are orientations, *columns* base positions without the swept coordinate. A line is a
 layer and a column; its free intervals are the *nodes*. Lines, nodes and proved or refuted edges

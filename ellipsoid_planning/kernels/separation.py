@@ -1,4 +1,4 @@
-"""Separation of two ellipsoids: a proved gap with its direction (design 3.1).
+"""Separation of two ellipsoids: a proved gap with its direction.
 
 For obstacle Σ₁ = A₁A₁ᵀ, part Σ₂ = A₂A₂ᵀ and c the difference of centres, every unit vector u gives
 the lower bound u·c − |A₁ᵀu| − |A₂ᵀu| of their distance. The scalar λ only proposes u: with
@@ -15,7 +15,7 @@ import math
 
 from .compile import kernel
 from .layout import BODY_CENTRE, BODY_INVERSE, BODY_MATRIX, PLACED_CENTRE, PLACED_MATRIX
-from .linear import norm, shape_matrix, solve_positive, times, transposed_times
+from .linear import gram, norm, shape_matrix, solve_positive, times, transposed_times
 
 _STEPS = 40
 _POLISH_STEPS = 30
@@ -77,12 +77,7 @@ def separation(bodies, j, placed, i, lam, required, mode):
     e2, e5, e8 = times(
         bodies, j, BODY_INVERSE, placed[i, m + 2], placed[i, m + 5], placed[i, m + 8]
     )
-    s0 = e0 * e0 + e1 * e1 + e2 * e2
-    s1 = e0 * e3 + e1 * e4 + e2 * e5
-    s2 = e0 * e6 + e1 * e7 + e2 * e8
-    s3 = e3 * e3 + e4 * e4 + e5 * e5
-    s4 = e3 * e6 + e4 * e7 + e5 * e8
-    s5 = e6 * e6 + e7 * e7 + e8 * e8
+    s0, s1, s2, s3, s4, s5 = gram(e0, e1, e2, e3, e4, e5, e6, e7, e8)
     low, high = 0.0, 1.0
     best, ux, uy, uz = -math.inf, 1.0, 0.0, 0.0
     yx, yy, yz = cx, cy, cz

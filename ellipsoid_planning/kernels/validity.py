@@ -149,15 +149,6 @@ def _arena_gap(arenas, a, placed, i, scene):
 
 
 @kernel
-def arena_gaps(scene, placed, out):
-    """Distances, shape (k, a), of every part from every arena's boundary; −1 where outside."""
-    arenas = arena_rows(scene)
-    for i in range(placed.shape[0]):
-        for a in range(arenas.shape[0]):
-            out[i, a] = _arena_gap(arenas, a, placed, i, scene)
-
-
-@kernel
 def clearance_of(scene, x, y, z, qx, qy, qz, qw):
     """Lower bound of the distance to obstacles and arena boundaries; negative where they meet.
 

@@ -1,4 +1,4 @@
-"""The highway roadmap planner, without OMPL (thesis 6.3, design 3.5)."""
+"""The highway roadmap planner, without OMPL (thesis 6.3)."""
 
 from __future__ import annotations
 
@@ -239,4 +239,5 @@ class HighwayRoadmap:
         self._level(0, poses[:1], poses[1:]).compile_kernels(poses)
         self.cspace.is_valid(ends[0])
         self._direct_motion(poses[0], poses[:1])
-        self._shortened(np.repeat(poses[:1], 2, axis=0))
+        if self.parameters.anytime:
+            self._shortened(np.repeat(poses[:1], 2, axis=0))

@@ -17,11 +17,22 @@ LONGEST_EXPLORATION = 2.0
 def scene_page(scenario: Scenario, result: PlanResult | None) -> str:
     """The HTML text of a page with the scenario, and the result's path if there is one.
 
-    The roadmap is what HighwayRoadmap explores between start and goal, whoever planned.
+    With a result, the roadmap is what HighwayRoadmap explores between start and goal, whoever
+    planned; without one, the whole roadmap at the start's orientation, less its redundant nodes.
     """
     from planners.view.meshcat_page import scene_html
 
-    return scene_html(scenario, result, _explored_roadmap(scenario))
+    roadmap = _start_layer(scenario) if result is None else _explored_roadmap(scenario)
+    return scene_html(scenario, result, roadmap)
+
+
+def _start_layer(scenario: Scenario) -> RoadmapGraph | None:
+    from ellipsoid_planning.roadmap.eager import eager_roadmap
+    from ellipsoid_planning.roadmap.prune import without_redundant_nodes
+
+    cspace = scenario.cspace()
+    graph = without_redundant_nodes(eager_roadmap(cspace, scenario.start), cspace)
+    return graph if len(graph.edges) else None
 
 
 def _explored_roadmap(scenario: Scenario) -> RoadmapGraph | None:

@@ -32,7 +32,7 @@ NEIGHBOURS = 8
 
 
 def heading_from_degrees(degrees: float) -> float:
-    """Return the heading in (-pi, pi] [rad] of an angle in degrees."""
+    """Return the heading in [-pi, pi) [rad] of an angle in degrees."""
     # The remainder of degrees is exact, that of radians is not.
     inside = -180.0 < degrees <= 180.0
     return normalised_heading(math.radians(degrees if inside else math.remainder(degrees, 360.0)))

@@ -30,7 +30,7 @@ class Scenario:
         world: obstacles, arenas and bounds, in the world frame.
         robot: the robot, in its base frame.
         start, goal: configurations (d,), see `RigidRobot`; headings [rad] are brought into
-            (-pi, pi] and quaternions (x, y, z, w) to unit length.
+            [-pi, pi) and quaternions (x, y, z, w) to unit length.
         clearance: the distance that every state and motion keeps, at least 0.
         planner: empty, or a planner's ``name`` and its parameters.
         description: what the scenario is about.

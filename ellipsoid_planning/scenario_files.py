@@ -15,6 +15,8 @@ SUFFIXES = (".yaml", ".yml")
 DUPLICATE = re.compile(r'found duplicate key "(.*?)"')
 POSITION = re.compile(r"position (\d+)")
 
+MOST_ENTRIES = 1_000_000
+
 
 def bundled_scenarios() -> dict[str, Path]:
     """Return the bundled scenario files by name, in alphabetical order."""
@@ -111,6 +113,11 @@ def _place(message: str, text: str) -> tuple[int | None, int | None]:
 
 def _plain(value: Any, path: EntryPath, origin: Origin) -> Any:
     """Return `value` without ruamel's types, noting the places of its entries in `origin`."""
+    if len(origin.values) > MOST_ENTRIES:
+        raise ScenarioError(
+            f"expected at most {MOST_ENTRIES} entries, aliases written out; split the scenario",
+            file=origin.file,
+        )
     if isinstance(value, dict):
         return {key: _entry(value, key, path, origin) for key in value}
     if isinstance(value, (list, tuple)):

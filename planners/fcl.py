@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ompl import base as ob
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.world import World
 
 from .spaces import check_space, state_access
@@ -23,7 +24,6 @@ from .validity import state_check
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
-    from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 
 RESOLUTION = 0.01
 """OMPL's default distance of checked states along a motion, as a fraction of the space's extent."""
@@ -33,23 +33,28 @@ class FclBodies:
     """The robot's parts and the obstacles as FCL objects, and queries between them.
 
     Planar bodies get a third axis and lie in z = 0, which changes no contact between them.
+    Everything is scaled to a largest semi-axis of 1, because FCL's tolerances are absolute.
     """
 
     def __init__(self, cspace: CSpace) -> None:
         """Build the objects and the dynamic AABB tree over the obstacles."""
-        self._parts = [fcl.CollisionObject(_shape(part)) for part in cspace.robot.parts]
-        placements = [_placement(part) for part in cspace.robot.parts]
+        bodies = (*cspace.robot.parts, *cspace.world.obstacles)
+        self._scale = 1.0 / max(float(body.semi_axes.max()) for body in bodies)
+        parts = [_scaled(part, self._scale) for part in cspace.robot.parts]
+        obstacles = [_scaled(body, self._scale) for body in cspace.world.obstacles]
+        self._parts = [fcl.CollisionObject(_shape(part)) for part in parts]
+        placements = [_placement(part) for part in parts]
         self._part_rotations = np.array([rotation for rotation, _ in placements])
         self._part_centres = np.array([centre for _, centre in placements])
         self._obstacles = fcl.DynamicAABBTreeCollisionManager()
-        self._obstacles.registerObjects([_placed(body) for body in cspace.world.obstacles])
+        self._obstacles.registerObjects([_placed(body) for body in obstacles])
         self._obstacles.setup()
         self._any = bool(cspace.world.obstacles)
 
     def place(self, rotation: NDArray[np.float64], position: NDArray[np.float64]) -> None:
         """Move the robot's base to ``position`` (3,) with ``rotation`` (3, 3), world frame."""
         rotations = rotation @ self._part_rotations
-        centres = self._part_centres @ rotation.T + position
+        centres = self._part_centres @ rotation.T + self._scale * position
         for part, turned, centre in zip(self._parts, rotations, centres, strict=True):
             part.setRotation(turned)
             part.setTranslation(centre)
@@ -70,7 +75,7 @@ class FclBodies:
             data = fcl.DistanceData()
             self._obstacles.distance(part, data, fcl.defaultDistanceCallback)
             best = min(best, data.result.min_distance)
-        return best
+        return best / self._scale
 
 
 class FclValidityChecker(ob.StateValidityChecker):
@@ -143,6 +148,10 @@ def _without_obstacles(cspace: CSpace) -> CSpace:
     world = cspace.world
     empty = World(low=world.low, high=world.high, arenas=world.arenas)
     return type(cspace)(empty, cspace.robot, cspace.clearance_required)
+
+
+def _scaled(body: Ellipsoid, scale: float) -> Ellipsoid:
+    return Ellipsoid(scale * body.centre, body.rotation, scale * body.semi_axes)
 
 
 def _shape(body: Ellipsoid) -> fcl.Ellipsoid:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -77,13 +78,15 @@ class HighwayRoadmap(ob.Planner):
         self.error: str | None = None
         self._roadmap: highway.HighwayRoadmap | None = None
 
-    def solve(self, ptc: ob.PlannerTerminationCondition) -> ob.PlannerStatus:
-        """Plan until a path is found, nothing is left to try, or ``ptc`` holds.
+    def solve(self, ptc: ob.PlannerTerminationCondition | float) -> ob.PlannerStatus:
+        """Plan until a path is found, nothing is left to try, or ``ptc`` holds (or seconds passed).
 
         With ``anytime`` the path is improved until ``ptc`` holds; every better one is added to
         the problem definition. An exception ends the solve with CRASH and is kept in ``error``.
         """
         self.error = None
+        if isinstance(ptc, int | float):
+            ptc = bindings.stop_after(ptc)
         try:
             return ob.PlannerStatus(self._solve(ptc))
         # An exception that crosses the bindings would end a whole benchmark.
@@ -136,6 +139,15 @@ class HighwayRoadmap(ob.Planner):
         if self.anytime not in HighwayRoadmap._warm:
             self.warm_up()
         self._current().prepare()
+
+    @classmethod
+    def check_values(cls, values: Mapping[str, Any]) -> None:
+        """Check values of parameters as far as that is possible without a scene.
+
+        Raises:
+            PlannerError: a value is out of its range.
+        """
+        RoadmapParameters(**values)
 
     def check_parameters(self) -> None:
         """Check the present parameters.

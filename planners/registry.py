@@ -100,6 +100,15 @@ class OwnPlanner:
         """The type (or tuple of types) of every parameter."""
         return dict(self.load().PARAMETERS)
 
+    def check_values(self, values: Mapping[str, Any]) -> None:
+        """Let the class check values of its parameters, if it has a ``check_values``.
+
+        Raises:
+            PlannerError: a value is out of its range.
+        """
+        if hasattr(self.load(), "check_values"):
+            self.load().check_values(values)
+
     def allocate(self, si: ob.SpaceInformation, values: Mapping[str, Any]) -> ob.Planner:
         """A new planner with ``values`` set; they must have gone through `checked_parameters`."""
         planner: Any = self.load()(si)
@@ -223,10 +232,13 @@ def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[s
     for name in values:
         if name not in kinds:
             raise PlannerError(f"{entry.name} has no parameter {name!r}{_hint(name, kinds)}")
-    return {
+    converted = {
         name: _converted(f"{entry.name}.{name}", value, kinds[name])
         for name, value in values.items()
     }
+    if isinstance(entry, OwnPlanner):
+        entry.check_values(converted)
+    return converted
 
 
 def _converted(where: str, value: Any, kind: Any) -> Any:

@@ -48,7 +48,8 @@ def poses(robot: RigidRobot, configurations: ArrayLike) -> Array:
     if robot.orientation is not None:
         out[:, 3:] = rotation_quaternion(robot.orientation)
     elif n == 2:
-        out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
+        with np.errstate(invalid="ignore"):  # what is no number becomes no rotation
+            out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
     else:
         out[:, 3:] = values[:, 3:]
     return out

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -123,9 +125,12 @@ class CSpace:
     def motion_clearance(self, first: ArrayLike, second: ArrayLike) -> float:
         """Proved lower bound of the clearance along a motion; negative if it is not proved free.
 
-        Within about 1e-3 of the smallest sampled clearance where proofs reach that far.
+        Infinite in an empty world; else within about 1e-3 of the smallest sampled clearance where
+        proofs reach that far.
         """
         begin, end = self.poses(first)[0], self.poses(second)[0]
+        if not (self.world.obstacles or self.world.arenas) and self.is_motion_valid(first, second):
+            return math.inf
         return float(
             motion.motion_clearance(self.scene, begin, end, _CLEARANCE_SAMPLES, _CLEARANCE_PROOFS)
         )

@@ -17,14 +17,16 @@ ORTHONORMALITY_TOLERANCE = 1e-9
 
 
 def normalised_heading(yaw: float) -> float:
-    """Return the heading in (-pi, pi] [rad] that equals `yaw` [rad] modulo a full turn.
+    """Return the heading in [-pi, pi) [rad] that equals `yaw` [rad] modulo a full turn.
+
+    These are the headings that OMPL has for valid.
 
     A heading that is already in the range keeps its bits.
     """
-    if -math.pi < yaw <= math.pi:
+    if -math.pi <= yaw < math.pi:
         return yaw
     wrapped = math.remainder(yaw, 2.0 * math.pi)
-    return math.pi if wrapped <= -math.pi else wrapped
+    return -math.pi if wrapped >= math.pi else wrapped
 
 
 def rotation_from_yaw(yaw: float) -> NDArray[np.float64]:
@@ -34,7 +36,7 @@ def rotation_from_yaw(yaw: float) -> NDArray[np.float64]:
 
 
 def yaw_from_rotation(rotation: ArrayLike) -> float:
-    """Return the heading [rad], in (-pi, pi], of a (2, 2) rotation."""
+    """Return the heading [rad], in [-pi, pi), of a (2, 2) rotation."""
     matrix = np.asarray(rotation, dtype=float)
     return normalised_heading(math.atan2(matrix[1, 0], matrix[0, 0]))
 

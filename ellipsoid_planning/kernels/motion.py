@@ -43,7 +43,7 @@ from .layout import (
 from .linear import cross, norm, product, rotation_matrix, transposed_times
 from .placement import place_part
 from .separation import AIM, separation
-from .validity import clearance_of, in_bounds
+from .validity import clearance_of, in_bounds, is_rotation
 
 # OMPL leaves the orientation at the first state's below a rotation of about 9e-5 rad; of 1.5e-4
 # if the lengths of its quaternions are off by 1e-9, the most that it takes for valid.
@@ -301,10 +301,11 @@ def prove_motion(scene, first, last, clearance, motion, placed, stack):
     Returns the number of proofs it took (≥ 1), or a negative number if it was refused. The
     workspaces have shapes (14,), (1, PLACED) and (128, 4).
     """
-    if not in_bounds(scene, first[0], first[1], first[2]):
-        return -1
-    if not in_bounds(scene, last[0], last[1], last[2]):
-        return -1
+    for end in (first, last):
+        if not (
+            in_bounds(scene, end[0], end[1], end[2]) and is_rotation(end[3], end[4], end[5], end[6])
+        ):
+            return -1
     move = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
     # Orientations r and q are joined by r q⁻¹, in the world frame.
     tx, ty, tz, tw = product(

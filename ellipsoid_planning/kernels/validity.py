@@ -42,6 +42,13 @@ def in_bounds(scene, x, y, z):
     )
 
 
+@kernel
+def is_rotation(qx, qy, qz, qw):
+    """Whether a quaternion of any length stands for a rotation: finite, and not zero."""
+    square = qx * qx + qy * qy + qz * qz + qw * qw
+    return square > 0.0 and square < math.inf
+
+
 @inlined
 def in_arena(arenas, a, placed, i, scene):
     """Whether part ``i`` provably keeps the scene's clearance inside arena ``a``."""
@@ -94,7 +101,7 @@ def placed_is_free(scene, placed):
 @kernel
 def configuration_is_free(scene, x, y, z, qx, qy, qz, qw):
     """Whether a configuration is provably free, in bounds and at the scene's clearance."""
-    if not in_bounds(scene, x, y, z):
+    if not (in_bounds(scene, x, y, z) and is_rotation(qx, qy, qz, qw)):
         return False
     placed = new_placed(scene)
     place(scene, x, y, z, qx, qy, qz, qw, placed)
@@ -115,7 +122,7 @@ def are_free(scene, poses, out):
     placed = new_placed(scene)
     for k in range(poses.shape[0]):
         p = poses[k]
-        out[k] = in_bounds(scene, p[0], p[1], p[2])
+        out[k] = in_bounds(scene, p[0], p[1], p[2]) and is_rotation(p[3], p[4], p[5], p[6])
         if out[k]:
             place(scene, p[0], p[1], p[2], p[3], p[4], p[5], p[6], placed)
             out[k] = placed_is_free(scene, placed)

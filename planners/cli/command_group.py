@@ -34,7 +34,16 @@ class CommandGroup(TyperGroup):
             say("Interrupted.")
             code = INTERRUPTED
         except BrokenPipeError:
-            # Whoever read our output has had enough; writing the rest at exit would fail again.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            # Whoever read our output has had enough.
+            _discard_output()
             code = NO_PATH
+        except OSError as error:
+            say(f"Error: cannot write the output: {error.strerror or error}")
+            _discard_output()
+            code = BAD_INPUT
         raise SystemExit(code)
+
+
+def _discard_output() -> None:
+    # Writing the rest at exit would fail again.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from enum import Enum
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.command_group import BAD_INPUT, NO_PATH, SOLVED
+from planners.cli.command_group import NO_PATH, SOLVED
 from planners.cli.outputs import check_outputs, write_csv
 from planners.cli.settings import planner_parameters
 from planners.cli.terminal import result_console, say, working, working_with_kernels
@@ -17,6 +18,7 @@ from planners.cli.terminal import result_console, say, working, working_with_ker
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
     from ellipsoid_planning.scenario import Scenario
+    from planners.registry import PlannerEntry
 
 
 DEFAULT_PLANNER = "HighwayRoadmap"
@@ -81,6 +83,7 @@ def plan(
     ellipsoid-planning plan my.yaml --planner RRTConnect --set planner.range=5 --time-limit 30
     """
     check_outputs(output=output, csv=csv, html=html)
+    _check_limits(time_limit, seed)
     parameters = planner_parameters(settings or [])
     problem = _checked_scenario(scenario, planner, checker.value, parameters)
     from planners import solve
@@ -97,8 +100,8 @@ def plan(
             parameters=parameters,
         )
     if result.status in ("invalid_start", "invalid_goal"):
-        say(f"Error: the {result.status.removeprefix('invalid_')} cannot be proved free")
-        raise typer.Exit(BAD_INPUT)
+        which = result.status.removeprefix("invalid_")
+        raise problem.origin.error((which,), f"the {which} cannot be proved free; move it a little")
     if result.path is not None and not result.path.certified:
         say("Note: the path is not certified; verify it before you rely on it.")
     _print(result, json)
@@ -129,13 +132,43 @@ def _check_planner(
 
     own = dict(scenario.planner)
     own_name = own.pop("name", DEFAULT_PLANNER)
-    entry = find_planner(own_name if planner is None else planner)
+    try:
+        entry = find_planner(own_name if planner is None else planner)
+    except PlannerError as error:
+        if planner is not None:
+            raise
+        raise scenario.origin.error(("planner", "name"), str(error)) from None
     if entry.needs_plugin and checker != CheckerName.plugin.value:
         raise PlannerError(
             f"{entry.name} works with the plug-in checker only; leave out --checker {checker}, "
             "or choose an OMPL planner with --planner"
         )
-    checked_parameters(entry, {**(own if entry.name == own_name else {}), **parameters})
+    for name, value in own.items() if entry.name == own_name else ():
+        _check_own(scenario, entry, name, value)
+    try:
+        checked_parameters(entry, parameters)
+    except PlannerError as error:
+        raise PlannerError(f"--set: {error}") from None
+
+
+def _check_own(scenario: Scenario, entry: PlannerEntry, name: str, value: object) -> None:
+    """Refuse a parameter of the scenario's planner block, with its place in the file."""
+    from ellipsoid_planning.errors import PlannerError
+    from planners.registry import checked_parameters
+
+    try:
+        checked_parameters(entry, {name: value})
+    except PlannerError as error:
+        raise scenario.origin.error(("planner", name), str(error)) from None
+
+
+def _check_limits(time_limit: float, seed: int | None) -> None:
+    from ellipsoid_planning.errors import PlannerError
+
+    if not 0.0 < time_limit < math.inf:
+        raise PlannerError(f"--time-limit: expected a positive number of seconds, got {time_limit}")
+    if seed is not None and not 0 <= seed < 2**32:
+        raise PlannerError(f"--seed: expected an integer in [0, 2**32), got {seed}")
 
 
 def _print(result: PlanResult, as_json: bool) -> None:

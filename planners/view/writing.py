@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ellipsoid_planning.atomic import partial_path
+from ellipsoid_planning.atomic import write_bytes
 from ellipsoid_planning.errors import EllipsoidPlanningError
 
 
@@ -20,14 +20,10 @@ def write_whole(output: str | Path, content: bytes) -> Path:
         raise EllipsoidPlanningError(
             f"{target}: the folder {str(target.parent)!r} does not exist; create it first"
         )
-    beside = partial_path(target)
     try:
-        beside.write_bytes(content)
-        beside.replace(target)
+        write_bytes(target, content)
     except OSError as error:
         raise EllipsoidPlanningError(
             f"{target}: cannot write the file: {error.strerror or error}"
         ) from None
-    finally:
-        beside.unlink(missing_ok=True)
     return target

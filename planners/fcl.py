@@ -29,17 +29,21 @@ RESOLUTION = 0.01
 """OMPL's default distance of checked states along a motion, as a fraction of the space's extent."""
 
 
+_LARGEST_AXIS = 30.0
+"""Scaled to this largest semi-axis, FCL's distances are right to about four digits."""
+
+
 class FclBodies:
     """The robot's parts and the obstacles as FCL objects, and queries between them.
 
     Planar bodies get a third axis and lie in z = 0, which changes no contact between them.
-    Everything is scaled to a largest semi-axis of 1, because FCL's tolerances are absolute.
+    Everything is scaled to one size, because FCL's tolerances are absolute.
     """
 
     def __init__(self, cspace: CSpace) -> None:
         """Build the objects and the dynamic AABB tree over the obstacles."""
         bodies = (*cspace.robot.parts, *cspace.world.obstacles)
-        self._scale = 1.0 / max(float(body.semi_axes.max()) for body in bodies)
+        self._scale = _LARGEST_AXIS / max(float(body.semi_axes.max()) for body in bodies)
         parts = [_scaled(part, self._scale) for part in cspace.robot.parts]
         obstacles = [_scaled(body, self._scale) for body in cspace.world.obstacles]
         self._parts = [fcl.CollisionObject(_shape(part)) for part in parts]

@@ -226,7 +226,8 @@ def test_schema_describes_the_format():
 
 
 @pytest.mark.parametrize(
-    ("degrees", "heading"), [(180, math.pi), (-180, math.pi), (540, math.pi), (-90, -math.pi / 2)]
+    ("degrees", "heading"),
+    [(180, -math.pi), (-180, -math.pi), (540, -math.pi), (-90, -math.pi / 2)],
 )
 def test_headings_are_normalised(tmp_path, degrees, heading):
     text = PLANAR.replace("yaw_deg: 30", f"yaw_deg: {degrees}")

@@ -93,8 +93,8 @@ OPTIONS = {
     "no planner key": (("--set", "range=2"), ("--set range=2", "planner.key=value")),
     "no value": (("--set", "planner.range"), ("planner.key=value",)),
     "broken value": (("--set", "planner.range=[1"), ("planner.range=[1",)),
-    "zero time": (("--time-limit", "0"), ("time limit",)),
-    "no time": (("--time-limit", "nan"), ("time limit",)),
+    "zero time": (("--time-limit", "0"), ("--time-limit",)),
+    "no time": (("--time-limit", "nan"), ("--time-limit",)),
     "negative seed": (("--seed", "-1"), ("seed",)),
     "HighwayRoadmap with FCL": (
         ("--planner", "HighwayRoadmap", "--checker", "fcl"),

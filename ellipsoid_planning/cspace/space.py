@@ -12,7 +12,7 @@ from ellipsoid_planning.cspace.layer import Layer
 from ellipsoid_planning.cspace.packing import pack_scene
 from ellipsoid_planning.cspace.poses import interpolate, poses, rotation_quaternion
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.kernels import layout, motion, validity
+from ellipsoid_planning.kernels import layout, motion, motion_clearance, validity
 from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.world import World
@@ -132,7 +132,9 @@ class CSpace:
         if not (self.world.obstacles or self.world.arenas) and self.is_motion_valid(first, second):
             return math.inf
         return float(
-            motion.motion_clearance(self.scene, begin, end, _CLEARANCE_SAMPLES, _CLEARANCE_PROOFS)
+            motion_clearance.motion_clearance(
+                self.scene, begin, end, _CLEARANCE_SAMPLES, _CLEARANCE_PROOFS
+            )
         )
 
     def interpolate(self, first: ArrayLike, second: ArrayLike, s: float) -> Array:

@@ -11,157 +11,53 @@ motion to the goal.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .compile import inlined, kernel
 from .containers import EMPTY, lookup, pop, push, store
 from .grid import UNKNOWN, find_nearest
 from .layout import ARENA_COUNT, CLEARANCE, OBSTACLE_COUNT, new_placed
-from .linear import norm
 from .lines import CAPACITY, free_intervals
 from .motion import prove_motion
 from .placement import place
+from .roadmap_metric import across, angle, apart, heuristic, step_length, write_pose
+from .roadmap_tables import (
+    COLUMN_STRIDE,
+    EDGES,
+    ENTRIES,
+    EXHAUSTED,
+    EXPANSIONS,
+    FREE_ENTRY,
+    GOAL_REACHED,
+    GROW,
+    JOINED,
+    LAYERS_PLACED,
+    LINE_BASE,
+    LINES,
+    NODE_BITS,
+    NODE_COLUMN,
+    NODE_COST,
+    NODE_ENTRY,
+    NODE_HIGH,
+    NODE_LAYER,
+    NODE_LEAVE,
+    NODE_LOW,
+    NODE_PARENT,
+    NODE_STAMP,
+    NODES,
+    OPEN,
+    OWN_LAYERS,
+    PROVED,
+    QUERY,
+    REFUTED,
+    SEARCHING,
+    SOLVED,
+)
 from .validity import placed_is_free
 
-# Status of a burst
-SEARCHING = 0
-SOLVED = 1
-EXHAUSTED = 2
-GROW = 3
-
-# Counters
-NODES = 0
-EDGES = 1
-ENTRIES = 2
-OPEN = 3
-LINES = 4
-PROVED = 5
-REFUTED = 6
-EXPANSIONS = 7
-LAYERS_PLACED = 8
-QUERY = 9
-GOAL_REACHED = 10
-# Layers of the grid itself, and to how many of them each layer is joined.
-OWN_LAYERS = 11
-JOINED = 12
-# The last entry that was taken out and can be used again, or −1; each links to the one before.
-FREE_ENTRY = 13
-COUNTERS = 14
-
-# Node columns of the integer table
-NODE_LAYER = 0
-NODE_COLUMN = 1
-NODE_PARENT = 2
-NODE_STAMP = 3
-NODE_INTEGERS = 4
-
-# Node columns of the real table: the interval, then what the present query knows
-NODE_LOW = 0
-NODE_HIGH = 1
-NODE_COST = 2
-NODE_ENTRY = 3
-NODE_LEAVE = 4
-NODE_REALS = 5
-
-# A line's key is layer · COLUMN_STRIDE + column; columns and layers may be added at any time.
-COLUMN_STRIDE = 1 << 20
-# A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
-LINE_BASE = 128
-NODE_BITS = 31
 # Rise over run beyond which intervals that do not overlap are not worth trying to join.
 _STEEPEST = 3.0
-
-
-class Roadmap(NamedTuple):
-    """The arrays of one roadmap; all but the first six grow (kernels.roadmap tells how).
-
-    Attributes:
-        orientations: quaternions of the layers (L, 4).
-        layer_neighbours: rows (L, K) of layers, filled up with −1; the grid's own neighbours of
-            a layer are looked for when it is first expanded.
-        columns: base positions (C, 3), swept coordinate 0.
-        column_neighbours: rows (C, D) of columns, filled up with −1.
-        placed: parts of each layer (L, k, PLACED), base at the origin.
-        ready: which layers are placed (L,).
-        whitening, whitening_keys, scratch: cache of lines.
-        lines, edges: maps (2, size) to nodes and edges.
-        node_integers, node_reals: tables of the nodes.
-        edge_reals: (E, 3): proved (1) or refuted (0), swept coordinate at either node.
-        heap, heap_items: the open list's order.
-        entry_reals: (N, 2): cost so far, swept coordinate at the parent.
-        entry_integers: (N, 3): target node or −1, parent node, line of a promise.
-        counters: (COUNTERS,).
-        motion, motion_placed, motion_stack: workspaces of kernels.motion.
-    """
-
-    orientations: NDArray[np.float64]
-    layer_neighbours: NDArray[np.int64]
-    columns: NDArray[np.float64]
-    column_neighbours: NDArray[np.int64]
-    placed: NDArray[np.float64]
-    ready: NDArray[np.bool_]
-    whitening: NDArray[np.float64]
-    whitening_keys: NDArray[np.int64]
-    scratch: NDArray[np.float64]
-    lines: NDArray[np.int64]
-    edges: NDArray[np.int64]
-    node_integers: NDArray[np.int64]
-    node_reals: NDArray[np.float64]
-    edge_reals: NDArray[np.float64]
-    heap: NDArray[np.float64]
-    heap_items: NDArray[np.int64]
-    entry_reals: NDArray[np.float64]
-    entry_integers: NDArray[np.int64]
-    counters: NDArray[np.int64]
-    motion: NDArray[np.float64]
-    motion_placed: NDArray[np.float64]
-    motion_stack: NDArray[np.float64]
-
-
-@kernel
-def _angle(orientations, a, b):
-    """Angle between the orientations of two layers [rad]."""
-    p, q = orientations[a], orientations[b]
-    dot = abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
-    return 2.0 * math.acos(min(dot, 1.0))
-
-
-@kernel
-def _heuristic(orientations, columns, layer, column, swept, axis, goals, weight):
-    """Smallest distance to a goal row (layer, x, y, z)."""
-    best = math.inf
-    for k in range(goals.shape[0]):
-        total = 0.0
-        for m in range(3):
-            value = swept if m == axis else columns[column, m]
-            total += (value - goals[k, 1 + m]) ** 2
-        distance = math.sqrt(total) + weight * _angle(orientations, layer, int(goals[k, 0]))
-        best = min(best, distance)
-    return best
-
-
-@kernel
-def _step(orientations, columns, nodes, a, za, b, zb, axis, weight):
-    """Length of the edge from node ``a`` at ``za`` to node ``b`` at ``zb``."""
-    ca, cb = nodes[a, NODE_COLUMN], nodes[b, NODE_COLUMN]
-    total = (za - zb) ** 2
-    for m in range(3):
-        if m != axis:
-            total += (columns[ca, m] - columns[cb, m]) ** 2
-    la, lb = nodes[a, NODE_LAYER], nodes[b, NODE_LAYER]
-    return math.sqrt(total) + (weight * _angle(orientations, la, lb) if la != lb else 0.0)
-
-
-@kernel
-def _pose(orientations, columns, nodes, node, swept, axis, out):
-    layer, column = nodes[node, NODE_LAYER], nodes[node, NODE_COLUMN]
-    for m in range(3):
-        out[m] = swept if m == axis else columns[column, m]
-    for m in range(4):
-        out[3 + m] = orientations[layer, m]
 
 
 @kernel
@@ -241,7 +137,7 @@ def _crossing(nodes, a, b, entry, choice):
 
 
 @inlined
-def _is_proved(scene, rm, ends):
+def is_proved(scene, rm, ends):
     """Whether the motion between the two poses ``ends`` is proved free."""
     proofs = prove_motion(
         scene, ends[0], ends[1], scene[CLEARANCE], rm.motion, rm.motion_placed, rm.motion_stack
@@ -287,9 +183,9 @@ def _prove_edge(scene, rm, a, b, entry, axis, ends):
         za, zb, exists = _crossing(rm.node_reals, a, b, entry, choice)
         if not exists:
             continue
-        _pose(rm.orientations, rm.columns, rm.node_integers, a, za, axis, ends[0])
-        _pose(rm.orientations, rm.columns, rm.node_integers, b, zb, axis, ends[1])
-        proved = _is_proved(scene, rm, ends)
+        write_pose(rm.orientations, rm.columns, rm.node_integers, a, za, axis, ends[0])
+        write_pose(rm.orientations, rm.columns, rm.node_integers, b, zb, axis, ends[1])
+        proved = is_proved(scene, rm, ends)
         if proved:
             break
     edge = rm.counters[EDGES]
@@ -344,24 +240,11 @@ def _promise(rm, node, layer, column, axis, goals, inflation, weight):
             step += (rm.columns[own_column, m] - rm.columns[column, m]) ** 2
     step = math.sqrt(step)
     if layer != own_layer:
-        step += weight * _angle(rm.orientations, own_layer, layer)
+        step += weight * angle(rm.orientations, own_layer, layer)
     cost = rm.node_reals[node, NODE_COST] + step
-    ahead = _heuristic(rm.orientations, rm.columns, layer, column, entry, axis, goals, weight)
+    ahead = heuristic(rm.orientations, rm.columns, layer, column, entry, axis, goals, weight)
     line = layer * COLUMN_STRIDE + column
     _open(rm, cost + inflation * ahead, cost, entry, -1, node, line)
-
-
-@kernel
-def _apart(nodes, a, b):
-    """Length of the gap between the intervals of two nodes; negative where they overlap."""
-    return max(nodes[b, NODE_LOW] - nodes[a, NODE_HIGH], nodes[a, NODE_LOW] - nodes[b, NODE_HIGH])
-
-
-@kernel
-def _across(columns, a, b):
-    """Distance of two columns."""
-    dx, dy = columns[a, 0] - columns[b, 0], columns[a, 1] - columns[b, 1]
-    return norm(dx, dy, columns[a, 2] - columns[b, 2])
 
 
 @inlined
@@ -379,14 +262,14 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
             if layer != rm.node_integers[parent, NODE_LAYER]:
                 continue
             other = rm.node_integers[parent, NODE_COLUMN]
-            if _apart(rm.node_reals, parent, node) > _STEEPEST * _across(rm.columns, other, column):
+            if apart(rm.node_reals, parent, node) > _STEEPEST * across(rm.columns, other, column):
                 continue
             za, zb, exists = _crossing(rm.node_reals, parent, node, entry, 3)
         cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
-        cost += _step(
+        cost += step_length(
             rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
         )
-        ahead = _heuristic(rm.orientations, rm.columns, layer, column, zb, axis, goals, weight)
+        ahead = heuristic(rm.orientations, rm.columns, layer, column, zb, axis, goals, weight)
         _open(rm, cost + inflation * ahead, cost, za, node, parent, line)
 
 
@@ -421,13 +304,13 @@ def _expand(rm, node, axis, goals, inflation, weight):
 def _meets_goal(scene, rm, node, axis, goals, ends, placed):
     """The goal to which the direct motion from ``node`` is proved free, or −1."""
     entry = rm.node_reals[node, NODE_ENTRY]
-    _pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
+    write_pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
     for k in range(goals.shape[0]):
         for m in range(3):
             ends[1, m] = goals[k, 1 + m]
         for m in range(4):
             ends[1, 3 + m] = rm.orientations[int(goals[k, 0]), m]
-        proved = _middle_is_free(scene, ends, placed) and _is_proved(scene, rm, ends)
+        proved = _middle_is_free(scene, ends, placed) and is_proved(scene, rm, ends)
         rm.counters[PROVED if proved else REFUTED] += 1
         if proved:
             return k
@@ -451,7 +334,7 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
         layer, column = int(starts[k, 0]), int(starts[k, 4])
         node = node_at(scene, rm, layer, column, swept, axis, intervals)
         if node >= 0:
-            ahead = _heuristic(
+            ahead = heuristic(
                 rm.orientations, rm.columns, layer, column, swept, axis, goals, weight
             )
             _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
@@ -507,7 +390,7 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             if not proved:
                 continue
             cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
-            cost += _step(
+            cost += step_length(
                 rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
             )
             _reach(rm, node, parent, za, zb, cost)
@@ -517,60 +400,3 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             return SOLVED
         _expand(rm, node, axis, goals, inflation, weight)
     return SEARCHING
-
-
-@kernel
-def _append(path, count, pose):
-    """Add a pose unless it repeats the last one; returns the new count."""
-    if count > 0:
-        same = True
-        for m in range(7):
-            same = same and path[count - 1, m] == pose[m]
-        if same:
-            return count
-    for m in range(7):
-        path[count, m] = pose[m]
-    return count + 1
-
-
-@kernel
-def path_room(rm, last):
-    """How many poses the path to node ``last`` and a goal can have at most."""
-    count, node = 1, last
-    while node >= 0:
-        count += 2
-        node = rm.node_integers[node, NODE_PARENT]
-    return count
-
-
-@kernel
-def trace(scene, rm, last, goal, goals, axis, path):
-    """Write the path from the start over node ``last`` to a goal to ``path``: its length.
-
-    Edges are proved already; the moves along intervals are proved here, once more than their ends
-    were. Returns 0 if one is refused, which only bodies of extreme shape can bring about.
-    """
-    ends = np.empty((2, 7))
-    # Links point backwards: turn them round, in the column that this query is done with.
-    node, after = last, -1
-    while node >= 0:
-        before = rm.node_integers[node, NODE_PARENT]
-        rm.node_integers[node, NODE_PARENT] = after
-        node, after = before, node
-    count, node = 0, after
-    while node >= 0:
-        following = rm.node_integers[node, NODE_PARENT]
-        entry = rm.node_reals[node, NODE_ENTRY]
-        leave = entry if following < 0 else rm.node_reals[following, NODE_LEAVE]
-        _pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
-        _pose(rm.orientations, rm.columns, rm.node_integers, node, leave, axis, ends[1])
-        if leave != entry and not _is_proved(scene, rm, ends):
-            return 0
-        count = _append(path, count, ends[0])
-        count = _append(path, count, ends[1])
-        node = following
-    for m in range(3):
-        ends[0, m] = goals[goal, 1 + m]
-    for m in range(4):
-        ends[0, 3 + m] = rm.orientations[int(goals[goal, 0]), m]
-    return _append(path, count, ends[0])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.poses import configurations_from_poses
-from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.containers import EMPTY
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.robots.rigid import RigidRobot
@@ -46,7 +46,9 @@ def _crossings(level: Level) -> tuple[Indices, Array]:
     used = table[0] != EMPTY
     keys, rows = table[0, used], level.tables.edge_reals[table[1, used]]
     proved = rows[:, 0] > 0.0
-    nodes = np.column_stack([keys >> roadmap.NODE_BITS, keys & ((1 << roadmap.NODE_BITS) - 1)])
+    nodes = np.column_stack(
+        [keys >> roadmap_tables.NODE_BITS, keys & ((1 << roadmap_tables.NODE_BITS) - 1)]
+    )
     return nodes[proved], rows[proved, 1:]
 
 
@@ -60,9 +62,9 @@ def _level_graph(level: Level, robot: RigidRobot) -> RoadmapGraph:
     along = np.column_stack([same, same + 1])
     integers = level.tables.node_integers[unique[:, 0].astype(np.int64)]
     poses = np.empty((len(unique), 7))
-    poses[:, :3] = level.tables.columns[integers[:, roadmap.NODE_COLUMN]]
+    poses[:, :3] = level.tables.columns[integers[:, roadmap_tables.NODE_COLUMN]]
     poses[:, level.axis] = unique[:, 1]
-    layers = integers[:, roadmap.NODE_LAYER]
+    layers = integers[:, roadmap_tables.NODE_LAYER]
     poses[:, 3:] = level.tables.orientations[layers]
     return RoadmapGraph(
         configurations_from_poses(robot, poses).reshape(len(poses), robot.configuration_size),

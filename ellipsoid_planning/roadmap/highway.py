@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.poses import configurations_from_poses
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.shortcut import shortcut
@@ -96,7 +96,7 @@ class HighwayRoadmap:
             level = self._level(index, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
             status, path = level.solve(begin, end, inflation, self._weight, should_stop)
-            if status == roadmap.SOLVED:
+            if status == roadmap_tables.SOLVED:
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)
                 best = self._better(best, path, on_path)
@@ -199,7 +199,7 @@ class HighwayRoadmap:
             if should_stop():
                 return best
             status, path = level.solve(starts, goals, inflation, self._weight, should_stop)
-            if status == roadmap.SOLVED:
+            if status == roadmap_tables.SOLVED:
                 best = self._better(best, self._shortened(path), on_path)
         while not should_stop():
             shorter = shorten(self.cspace, best, self._random, should_stop)

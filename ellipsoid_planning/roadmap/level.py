@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels import roadmap, roadmap_path, roadmap_tables
 from ellipsoid_planning.roadmap.grid import Grid
 from ellipsoid_planning.roadmap.tables import grown, new_tables, warm_up_growth, with_grid
 
@@ -56,19 +56,19 @@ class Level:
             self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
         )
         steps = _FIRST_BURST
-        while status in (roadmap.SEARCHING, roadmap.GROW):
-            if status == roadmap.GROW:
+        while status in (roadmap_tables.SEARCHING, roadmap_tables.GROW):
+            if status == roadmap_tables.GROW:
                 self.tables = grown(self.tables)
             began = time.perf_counter()
             status = roadmap.search(
                 self._scene, self.tables, goal_rows, self.axis, inflation, metric_weight, steps
             )
-            if status == roadmap.SEARCHING and should_stop():
+            if status == roadmap_tables.SEARCHING and should_stop():
                 break
             # A step may take a microsecond or, among thousands of bodies, a hundredth of a second.
             late = time.perf_counter() - began > _BURST_SECONDS
             steps = max(steps // 4, 1) if late else min(2 * steps, _LONGEST_BURST)
-        if status != roadmap.SOLVED:
+        if status != roadmap_tables.SOLVED:
             return status, np.empty((0, 7))
         return self._path(goal_rows)
 
@@ -80,10 +80,10 @@ class Level:
         return np.array(rows, dtype=float)
 
     def _path(self, goals: Array) -> tuple[int, Array]:
-        last, goal = divmod(int(self.tables.counters[roadmap.GOAL_REACHED]), len(goals))
-        path = np.empty((roadmap.path_room(self.tables, last), 7))
-        count = roadmap.trace(self._scene, self.tables, last, goal, goals, self.axis, path)
-        return (roadmap.SOLVED if count else roadmap.EXHAUSTED), path[:count]
+        last, goal = divmod(int(self.tables.counters[roadmap_tables.GOAL_REACHED]), len(goals))
+        path = np.empty((roadmap_path.path_room(self.tables, last), 7))
+        count = roadmap_path.trace(self._scene, self.tables, last, goal, goals, self.axis, path)
+        return (roadmap_tables.SOLVED if count else roadmap_tables.EXHAUSTED), path[:count]
 
     def compile_kernels(self, ends: Array) -> None:
         """Call every kernel of a query once, on two poses ``ends`` (2, 7), without searching."""
@@ -92,18 +92,18 @@ class Level:
         roadmap.begin(self._scene, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
         roadmap.search(self._scene, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
         warm_up_growth()
-        path = np.empty((roadmap.path_room(self.tables, -1) + 1, 7))
-        roadmap.trace(self._scene, self.tables, -1, 0, rows[1:], self.axis, path)
+        path = np.empty((roadmap_path.path_room(self.tables, -1) + 1, 7))
+        roadmap_path.trace(self._scene, self.tables, -1, 0, rows[1:], self.axis, path)
 
     @property
     def statistics(self) -> dict[str, int]:
         """Counts of what has been computed so far."""
         counters = self.tables.counters
         return {
-            "layers": int(counters[roadmap.LAYERS_PLACED]),
-            "lines": int(counters[roadmap.LINES]),
-            "intervals": int(counters[roadmap.NODES]),
-            "edges_certified": int(counters[roadmap.PROVED]),
-            "edges_refused": int(counters[roadmap.REFUTED]),
-            "expansions": int(counters[roadmap.EXPANSIONS]),
+            "layers": int(counters[roadmap_tables.LAYERS_PLACED]),
+            "lines": int(counters[roadmap_tables.LINES]),
+            "intervals": int(counters[roadmap_tables.NODES]),
+            "edges_certified": int(counters[roadmap_tables.PROVED]),
+            "edges_refused": int(counters[roadmap_tables.REFUTED]),
+            "expansions": int(counters[roadmap_tables.EXPANSIONS]),
         }

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.kernels import layout, motion, roadmap, whitening
+from ellipsoid_planning.kernels import layout, motion, roadmap_tables, whitening
 from ellipsoid_planning.kernels.containers import EMPTY, rehash
 from ellipsoid_planning.kernels.lines import CAPACITY
-from ellipsoid_planning.kernels.roadmap import Roadmap
+from ellipsoid_planning.kernels.roadmap_tables import Roadmap
 from ellipsoid_planning.roadmap.grid import Grid
 
 _ROWS = 1 << 12
@@ -24,8 +24,8 @@ def _map(size: int) -> NDArray[np.int64]:
 def new_tables(grid: Grid, parts: int) -> Roadmap:
     """Empty tables for the columns and layers of ``grid`` and a robot of ``parts`` parts."""
     workspace, placed, stack = motion.motion_workspaces()
-    counters = np.zeros(roadmap.COUNTERS, dtype=np.int64)
-    counters[[roadmap.OWN_LAYERS, roadmap.JOINED]] = grid.own_layers, grid.joined
+    counters = np.zeros(roadmap_tables.COUNTERS, dtype=np.int64)
+    counters[[roadmap_tables.OWN_LAYERS, roadmap_tables.JOINED]] = grid.own_layers, grid.joined
     return Roadmap(
         orientations=grid.orientations,
         layer_neighbours=grid.layer_neighbours,
@@ -38,8 +38,8 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         scratch=np.empty((1, 9)),
         lines=_map(2 * _ROWS),
         edges=_map(2 * _ROWS),
-        node_integers=np.zeros((_ROWS, roadmap.NODE_INTEGERS), dtype=np.int64),
-        node_reals=np.empty((_ROWS, roadmap.NODE_REALS)),
+        node_integers=np.zeros((_ROWS, roadmap_tables.NODE_INTEGERS), dtype=np.int64),
+        node_reals=np.empty((_ROWS, roadmap_tables.NODE_REALS)),
         edge_reals=np.empty((_ROWS, 3)),
         heap=np.empty(4 * _ROWS),
         heap_items=np.empty(4 * _ROWS, dtype=np.int64),
@@ -80,11 +80,14 @@ def _enough(size: int, used: int) -> int:
 def grown(tables: Roadmap, starts: int = 0) -> Roadmap:
     """``tables`` with more room wherever it runs short, for a step or a query of ``starts``."""
     used = tables.counters
-    nodes, edges = int(used[roadmap.NODES]) + starts * CAPACITY, int(used[roadmap.EDGES])
+    nodes, edges = (
+        int(used[roadmap_tables.NODES]) + starts * CAPACITY,
+        int(used[roadmap_tables.EDGES]),
+    )
     branches = tables.column_neighbours.shape[1] + tables.layer_neighbours.shape[1]
-    entries = max(int(used[roadmap.ENTRIES]), starts) + branches
+    entries = max(int(used[roadmap_tables.ENTRIES]), starts) + branches
     return tables._replace(
-        lines=_larger_map(tables.lines, int(used[roadmap.LINES]) + starts),
+        lines=_larger_map(tables.lines, int(used[roadmap_tables.LINES]) + starts),
         edges=_larger_map(tables.edges, edges),
         node_integers=_longer(tables.node_integers, nodes),
         node_reals=_longer(tables.node_reals, nodes),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.kernels import roadmap
+from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap import tables
 from ellipsoid_planning.roadmap.eager import eager_roadmap, layer_orientations
@@ -195,9 +195,9 @@ def test_thousands_of_starts_and_goals_fit_the_tables():
     assert len(starts) > 1500
     level = HighwayRoadmap(cspace)._level(0, cspace.poses(starts[:1]), cspace.poses(goals[:1]))
     status, path = level.solve(cspace.poses(starts), cspace.poses(goals), 1.0, 1.0, never)
-    assert (status, len(path)) == (roadmap.EXHAUSTED, 0)
+    assert (status, len(path)) == (roadmap_tables.EXHAUSTED, 0)
     # More intervals than the tables begin with.
-    assert level.tables.counters[roadmap.NODES] > 4096
+    assert level.tables.counters[roadmap_tables.NODES] > 4096
 
 
 def test_many_neighbours_fit_the_tables():

@@ -1,0 +1,98 @@
+"""The arrays of one roadmap, and what stands where in them (see kernels.roadmap)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Status of a burst
+SEARCHING = 0
+SOLVED = 1
+EXHAUSTED = 2
+GROW = 3
+
+# Counters
+NODES = 0
+EDGES = 1
+ENTRIES = 2
+OPEN = 3
+LINES = 4
+PROVED = 5
+REFUTED = 6
+EXPANSIONS = 7
+LAYERS_PLACED = 8
+QUERY = 9
+GOAL_REACHED = 10
+# Layers of the grid itself, and to how many of them each layer is joined.
+OWN_LAYERS = 11
+JOINED = 12
+# The last entry that was taken out and can be used again, or −1; each links to the one before.
+FREE_ENTRY = 13
+COUNTERS = 14
+
+# Node columns of the integer table
+NODE_LAYER = 0
+NODE_COLUMN = 1
+NODE_PARENT = 2
+NODE_STAMP = 3
+NODE_INTEGERS = 4
+
+# Node columns of the real table: the interval, then what the present query knows
+NODE_LOW = 0
+NODE_HIGH = 1
+NODE_COST = 2
+NODE_ENTRY = 3
+NODE_LEAVE = 4
+NODE_REALS = 5
+
+# A line's key is layer · COLUMN_STRIDE + column; columns and layers may be added at any time.
+COLUMN_STRIDE = 1 << 20
+# A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
+LINE_BASE = 128
+NODE_BITS = 31
+
+
+class Roadmap(NamedTuple):
+    """The arrays of one roadmap; all but the first six grow (kernels.roadmap tells how).
+
+    Attributes:
+        orientations: quaternions of the layers (L, 4).
+        layer_neighbours: rows (L, K) of layers, filled up with −1; the grid's own neighbours of
+            a layer are looked for when it is first expanded.
+        columns: base positions (C, 3), swept coordinate 0.
+        column_neighbours: rows (C, D) of columns, filled up with −1.
+        placed: parts of each layer (L, k, PLACED), base at the origin.
+        ready: which layers are placed (L,).
+        whitening, whitening_keys, scratch: cache of lines.
+        lines, edges: maps (2, size) to nodes and edges.
+        node_integers, node_reals: tables of the nodes.
+        edge_reals: (E, 3): proved (1) or refuted (0), swept coordinate at either node.
+        heap, heap_items: the open list's order.
+        entry_reals: (N, 2): cost so far, swept coordinate at the parent.
+        entry_integers: (N, 3): target node or −1, parent node, line of a promise.
+        counters: (COUNTERS,).
+        motion, motion_placed, motion_stack: workspaces of kernels.motion.
+    """
+
+    orientations: NDArray[np.float64]
+    layer_neighbours: NDArray[np.int64]
+    columns: NDArray[np.float64]
+    column_neighbours: NDArray[np.int64]
+    placed: NDArray[np.float64]
+    ready: NDArray[np.bool_]
+    whitening: NDArray[np.float64]
+    whitening_keys: NDArray[np.int64]
+    scratch: NDArray[np.float64]
+    lines: NDArray[np.int64]
+    edges: NDArray[np.int64]
+    node_integers: NDArray[np.int64]
+    node_reals: NDArray[np.float64]
+    edge_reals: NDArray[np.float64]
+    heap: NDArray[np.float64]
+    heap_items: NDArray[np.int64]
+    entry_reals: NDArray[np.float64]
+    entry_integers: NDArray[np.int64]
+    counters: NDArray[np.int64]
+    motion: NDArray[np.float64]
+    motion_placed: NDArray[np.float64]
+    motion_stack: NDArray[np.float64]

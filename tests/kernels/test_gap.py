@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ellipsoid_planning.geometry import dual
 from tests import exact, oracles, random_scenes
 from tests.oracles import Body
-
-dual = pytest.importorskip("ellipsoid_planning.geometry.dual")
 
 EXAMPLES = settings(max_examples=150, deadline=None, derandomize=True)
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])

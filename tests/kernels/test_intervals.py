@@ -11,8 +11,6 @@ from tests import motion_oracle, random_scenes
 from tests.motion_oracle import Scene
 from tests.oracles import Body
 
-space_module = pytest.importorskip("ellipsoid_planning.cspace.space")
-
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 HAIR = 1e-8  # how far inside or outside an end the answers must be clear
 

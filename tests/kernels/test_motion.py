@@ -9,8 +9,6 @@ from tests import motion_oracle, random_scenes
 from tests.oracles import Body
 from tests.simple_motions import bar, one_part, pose, random_motion
 
-space_module = pytest.importorskip("ellipsoid_planning.cspace.space")
-
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
 # Free motions may be refused below this clearance, in units of the scene (the package says 1e-12

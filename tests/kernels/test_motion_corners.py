@@ -9,8 +9,6 @@ from tests import motion_oracle, random_scenes
 from tests.oracles import Body
 from tests.simple_motions import one_part, pose, random_motion
 
-space_module = pytest.importorskip("ellipsoid_planning.cspace.space")
-
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
 # --------------------------------------------------------------------------- OMPL's corners

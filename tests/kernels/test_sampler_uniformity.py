@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from ellipsoid_planning.cspace import sampling as sampling_module
 from tests import motion_oracle, random_scenes
 from tests.motion_oracle import Scene
 from tests.oracles import Body
-
-sampling_module = pytest.importorskip("ellipsoid_planning.cspace.sampling")
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 KINDS = pytest.mark.parametrize("rotates", [True, False])

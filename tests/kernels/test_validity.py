@@ -9,8 +9,6 @@ from tests import exact, motion_oracle, oracles, random_scenes
 from tests.motion_oracle import Scene
 from tests.oracles import Body
 
-space_module = pytest.importorskip("ellipsoid_planning.cspace.space")
-
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
 

@@ -10,7 +10,7 @@ import difflib
 import importlib
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning.errors import PlannerError
@@ -76,11 +76,11 @@ class BoundPlanner:
 class OwnPlanner:
     """A planner of ours, a subclass of `ob.Planner` with these members.
 
-    ``PARAMETERS`` maps the names of its parameters, which are plain attributes, to their types.
-    Optional are the method ``check_parameters()``, which raises PlannerError, the method
-    ``warm_up()``, which compiles what a solve needs, the mapping ``statistics``, whose entries
-    ``build_time`` and ``search_time`` go to a result's times, and ``error``, the traceback of an
-    exception that ended the last solve with CRASH.
+    ``PARAMETERS`` maps the names of its parameters, which are plain attributes, to their types;
+    without it there are none. Optional are also the method ``check_parameters()``, which raises
+    PlannerError, the method ``warm_up()``, which compiles what a solve needs, the mapping
+    ``statistics``, whose entries ``build_time`` and ``search_time`` go to a result's times, and
+    ``error``, the traceback of an exception that ended the last solve with CRASH.
 
     Attributes:
         name: the class.
@@ -98,7 +98,7 @@ class OwnPlanner:
 
     def parameter_kinds(self) -> dict[str, Any]:
         """The type (or tuple of types) of every parameter."""
-        return dict(self.load().PARAMETERS)
+        return dict(getattr(self.load(), "PARAMETERS", {}))
 
     def check_values(self, values: Mapping[str, Any]) -> None:
         """Let the class check values of its parameters, if it has a ``check_values``.
@@ -214,12 +214,31 @@ def planner_names() -> tuple[str, ...]:
 def find_planner(name: str) -> PlannerEntry:
     """The entry of a planner.
 
+    A name ``module:Class`` stands for a subclass of `ob.Planner` of your own in a module that
+    can be imported, see `OwnPlanner`; with a class attribute ``NEEDS_PLUGIN`` that is true it
+    works with the plug-in's checker only.
+
     Raises:
         PlannerError: no planner has this name; the message suggests the closest ones.
     """
     if name in _BY_NAME:
         return _BY_NAME[name]
+    if ":" in name:
+        return _foreign_planner(*name.split(":", 1))
     raise PlannerError(f"unknown planner {name!r}{_hint(name, _BY_NAME)}")
+
+
+def _foreign_planner(module: str, class_name: str) -> OwnPlanner:
+    entry = OwnPlanner(class_name, module)
+    try:
+        found = entry.load()
+    except (ImportError, ValueError) as error:
+        raise PlannerError(f"planner {module}:{class_name}: cannot import it: {error}") from None
+    except AttributeError:
+        raise PlannerError(
+            f"planner {module}:{class_name}: the module {module} has no {class_name}"
+        ) from None
+    return replace(entry, needs_plugin=bool(getattr(found, "NEEDS_PLUGIN", False)))
 
 
 def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -17,50 +17,25 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.result import PlanResult
 
 from . import bindings
-from .certify import is_certified, path_result
-from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
-from .setup import CHECKERS, Checker, simple_setup
-from .spaces import state_access, write_configuration
+from .certify import path_result
+from .registry import OwnPlanner
+from .request import (
+    STATUS_NAMES,
+    Request,
+    checked_request,
+    planner_statistics,
+    prepared,
+    simplified_path,
+)
+from .setup import Checker
+from .spaces import state_access
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.cspace.space import CSpace
     from ellipsoid_planning.scenario import Scenario
 
-DEFAULT_PLANNER = "HighwayRoadmap"
-SIMPLIFICATION_LIMIT = 2.0
-"""Longest time for simplifying one path [s]; it usually converges far earlier."""
-
-_Statuses = ob.PlannerStatus.PlannerStatusType
-_SOLVED = _Statuses.EXACT_SOLUTION
-_STATUS_NAMES = {
-    _SOLVED: "solved",
-    _Statuses.INVALID_START: "invalid_start",
-    _Statuses.INVALID_GOAL: "invalid_goal",
-    _Statuses.INFEASIBLE: "exhausted",
-    _Statuses.TIMEOUT: "timeout",
-    _Statuses.APPROXIMATE_SOLUTION: "timeout",
-    _Statuses.UNKNOWN: "timeout",
-}
-
 
 @dataclass(frozen=True)
-class _Request:
-    """What `plan` was asked for, checked."""
-
-    scenario: Scenario
-    cspace: CSpace
-    entry: PlannerEntry
-    parameters: Mapping[str, Any]
-    checker: Checker
-    resolution: float | None
-    time_limit: float
-    seed: int | None
-    simplify: bool
-    anytime: bool
-
-
-@dataclass(frozen=True)
-class _Run:
+class Outcome:
     """What a planner came back with; ``configurations`` (m, d) only when solved."""
 
     status: str
@@ -103,7 +78,7 @@ def plan(
         PlannerError: unknown planner, parameter or checker, or a combination that cannot work.
         KeyboardInterrupt: SIGINT arrived; the planner has returned and all is restored.
     """
-    request = _checked_request(
+    request = checked_request(
         scenario, planner, checker, time_limit, seed, simplify, anytime, parameters, resolution
     )
     for status, configuration in (
@@ -111,99 +86,42 @@ def plan(
         ("invalid_goal", scenario.goal),
     ):
         if not request.cspace.is_valid(configuration):
-            return _result(request, _Run(status, 0.0, None, {}))
+            return plan_result(request, Outcome(status, 0.0, None, {}))
     with bindings.ompl_output("silent"):
-        return _result(request, _run(request))
+        return plan_result(request, _run(request))
 
 
-def _checked_request(
-    scenario: Scenario,
-    planner: str | None,
-    checker: Checker,
-    time_limit: float,
-    seed: int | None,
-    simplify: bool,
-    anytime: bool,
-    parameters: Mapping[str, Any] | None,
-    resolution: float | None,
-) -> _Request:
-    own = dict(scenario.planner)
-    own_name = own.pop("name", DEFAULT_PLANNER)
-    entry = find_planner(own_name if planner is None else planner)
-    if checker not in CHECKERS:
-        raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
-    if entry.needs_plugin and checker != "plugin":
-        raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
-    if not time_limit > 0.0:
-        raise PlannerError(f"time limit: expected a positive number of seconds, got {time_limit!r}")
-    values = {**(own if entry.name == own_name else {}), **(parameters or {})}
-    return _Request(
-        scenario=scenario,
-        cspace=scenario.cspace(),
-        entry=entry,
-        parameters=checked_parameters(entry, values),
-        checker=checker,
-        resolution=resolution,
-        time_limit=float(time_limit),
-        seed=seed,
-        simplify=simplify,
-        anytime=anytime,
-    )
-
-
-def _run(request: _Request) -> _Run:
-    setup = simple_setup(
-        request.scenario,
-        request.checker,
-        request.seed,
-        request.resolution,
-        cspace=request.cspace,
-    )
-    si = setup.getSpaceInformation()
-    setup.setOptimizationObjective(bindings.path_length_objective(si, not request.anytime))
-    planner = _allocated(request, si)
-    setup.setPlanner(planner)
+def _run(request: Request) -> Outcome:
+    setup, planner = prepared(request)
     try:
-        _warm_up(setup, planner, request)
         return _solved(request, setup, planner)
     finally:
-        bindings.clear_sampler(si)
+        bindings.clear_sampler(setup.getSpaceInformation())
 
 
-def _allocated(request: _Request, si: ob.SpaceInformation) -> ob.Planner:
-    values = dict(request.parameters)
-    if isinstance(request.entry, OwnPlanner):
-        kinds = request.entry.parameter_kinds()
-        if request.seed is not None and "seed" in kinds:
-            values.setdefault("seed", request.seed)
-        if request.anytime and "anytime" in kinds:
-            values.setdefault("anytime", True)
-    return request.entry.allocate(si, values)
-
-
-def _solved(request: _Request, setup: og.SimpleSetup, planner: ob.Planner) -> _Run:
+def _solved(request: Request, setup: og.SimpleSetup, planner: ob.Planner) -> Outcome:
     condition = _condition(request, setup)
     with bindings.interruptible(condition) as interruption:
         status = setup.solve(condition).getStatus()
         gave_up = not condition()
     if interruption.requested:
         raise KeyboardInterrupt
-    if status not in _STATUS_NAMES:
+    if status not in STATUS_NAMES:
         raise _failure(request.entry.name, status.name, getattr(planner, "error", None))
-    name = _STATUS_NAMES[status]
+    name = STATUS_NAMES[status]
     if name == "timeout" and gave_up:
         name = "exhausted"
     seconds = float(setup.getLastPlanComputationTime())
-    statistics = _statistics(planner)
+    statistics = planner_statistics(planner)
     if name != "solved":
-        return _Run(name, seconds, None, statistics)
+        return Outcome(name, seconds, None, statistics)
     access = state_access(request.cspace)
     found = bindings.configurations_of_path(setup.getSolutionPath(), access)
     if request.simplify:
         began = time.perf_counter()
-        found = _simplified(request, setup.getSpaceInformation(), found)
+        found = simplified_path(request, setup.getSpaceInformation(), found)
         statistics["simplification_time"] = time.perf_counter() - began
-    return _Run(name, seconds, found, statistics)
+    return Outcome(name, seconds, found, statistics)
 
 
 def _failure(planner: str, status: str, traceback: str | None) -> PlannerError:
@@ -214,50 +132,14 @@ def _failure(planner: str, status: str, traceback: str | None) -> PlannerError:
     return error
 
 
-def _condition(request: _Request, setup: og.SimpleSetup) -> ob.PlannerTerminationCondition:
+def _condition(request: Request, setup: og.SimpleSetup) -> ob.PlannerTerminationCondition:
     if request.anytime or isinstance(request.entry, OwnPlanner):
         return bindings.stop_after(request.time_limit)
     return bindings.stop_when_solved(setup.getProblemDefinition(), request.time_limit)
 
 
-def _simplified(
-    request: _Request, si: ob.SpaceInformation, found: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    condition = bindings.stop_after(SIMPLIFICATION_LIMIT)
-    with bindings.interruptible(condition) as interruption:
-        shorter = bindings.simplified(si, found, state_access(request.cspace), condition)
-    if interruption.requested:
-        raise KeyboardInterrupt
-    # Simplification ends with a repair that moves states, and halves segments: certify again.
-    if is_certified(request.cspace, shorter) or not is_certified(request.cspace, found):
-        return shorter
-    return found
-
-
-def _statistics(planner: ob.Planner) -> dict[str, Any]:
-    if not bindings.is_bound(planner):
-        return dict(getattr(planner, "statistics", {}))
-    size = bindings.graph_size_of_planner(planner)
-    return {} if size is None else {"vertices": size[0], "edges": size[1]}
-
-
-def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: _Request) -> None:
-    # Compile every kernel that a solve can call, so that its time is the planner's alone.
-    si = setup.getSpaceInformation()
-    state = si.allocState()
-    write_configuration(state, request.scenario.start, request.cspace)
-    si.isValid(state)
-    si.checkMotion(state, state)
-    if isinstance(request.entry, OwnPlanner):
-        if hasattr(planner, "warm_up"):
-            planner.warm_up()
-        return
-    sampler = si.allocValidStateSampler()
-    sampler.sampleNear(state, state, 1e-3)
-    sampler.sample(state)
-
-
-def _result(request: _Request, run: _Run) -> PlanResult:
+def plan_result(request: Request, run: Outcome) -> PlanResult:
+    """The result that an outcome makes, its path measured and certified."""
     statistics, found = dict(run.statistics), run.configurations
     path = None if found is None else path_result(request.cspace, found)
     return PlanResult(

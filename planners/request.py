@@ -1,0 +1,175 @@
+"""What a planner is asked for, checked, and everything made ready for it to begin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from ompl import base as ob
+from ompl import geometric as og
+
+from ellipsoid_planning.errors import PlannerError
+
+from . import bindings
+from .certify import is_certified
+from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
+from .setup import CHECKERS, Checker, simple_setup
+from .spaces import state_access, write_configuration
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.scenario import Scenario
+
+DEFAULT_PLANNER = "HighwayRoadmap"
+SIMPLIFICATION_LIMIT = 2.0
+"""Longest time for simplifying one path [s]; it usually converges far earlier."""
+
+_Statuses = ob.PlannerStatus.PlannerStatusType
+SOLVED = _Statuses.EXACT_SOLUTION
+STATUS_NAMES = {
+    SOLVED: "solved",
+    _Statuses.INVALID_START: "invalid_start",
+    _Statuses.INVALID_GOAL: "invalid_goal",
+    _Statuses.INFEASIBLE: "exhausted",
+    _Statuses.TIMEOUT: "timeout",
+    _Statuses.APPROXIMATE_SOLUTION: "timeout",
+    _Statuses.UNKNOWN: "timeout",
+}
+"""The name that a result gives to each of OMPL's statuses; others are failures of the planner."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a planner is asked for; its fields are those of `planners.solve.plan`, checked."""
+
+    scenario: Scenario
+    cspace: CSpace
+    entry: PlannerEntry
+    parameters: Mapping[str, Any]
+    checker: Checker
+    resolution: float | None
+    time_limit: float
+    seed: int | None
+    simplify: bool
+    anytime: bool
+
+
+def checked_request(
+    scenario: Scenario,
+    planner: str | None = None,
+    checker: Checker = "plugin",
+    time_limit: float = 10.0,
+    seed: int | None = None,
+    simplify: bool = True,
+    anytime: bool = False,
+    parameters: Mapping[str, Any] | None = None,
+    resolution: float | None = None,
+) -> Request:
+    """The request that these arguments of `planners.solve.plan` make.
+
+    Raises:
+        PlannerError: unknown planner, parameter or checker, or a combination that cannot work.
+    """
+    own = dict(scenario.planner)
+    own_name = own.pop("name", DEFAULT_PLANNER)
+    entry = find_planner(own_name if planner is None else planner)
+    if checker not in CHECKERS:
+        raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
+    if entry.needs_plugin and checker != "plugin":
+        raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
+    if not time_limit > 0.0:
+        raise PlannerError(f"time limit: expected a positive number of seconds, got {time_limit!r}")
+    values = {**(own if entry.name == own_name else {}), **(parameters or {})}
+    return Request(
+        scenario=scenario,
+        cspace=scenario.cspace(),
+        entry=entry,
+        parameters=checked_parameters(entry, values),
+        checker=checker,
+        resolution=resolution,
+        time_limit=float(time_limit),
+        seed=seed,
+        simplify=simplify,
+        anytime=anytime,
+    )
+
+
+def prepared(request: Request) -> tuple[og.SimpleSetup, ob.Planner]:
+    """The set-up of a request with its planner, every kernel that a solve can call compiled.
+
+    Call `planners.bindings.clear_sampler` on its space information when it has served.
+    """
+    setup = simple_setup(
+        request.scenario,
+        request.checker,
+        request.seed,
+        request.resolution,
+        cspace=request.cspace,
+    )
+    si = setup.getSpaceInformation()
+    try:
+        setup.setOptimizationObjective(bindings.path_length_objective(si, not request.anytime))
+        planner = _allocated(request, si)
+        setup.setPlanner(planner)
+        _warm_up(setup, planner, request)
+    except BaseException:
+        bindings.clear_sampler(si)
+        raise
+    return setup, planner
+
+
+def _allocated(request: Request, si: ob.SpaceInformation) -> ob.Planner:
+    values = dict(request.parameters)
+    if isinstance(request.entry, OwnPlanner):
+        kinds = request.entry.parameter_kinds()
+        if request.seed is not None and "seed" in kinds:
+            values.setdefault("seed", request.seed)
+        if request.anytime and "anytime" in kinds:
+            values.setdefault("anytime", True)
+    return request.entry.allocate(si, values)
+
+
+def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: Request) -> None:
+    # Compile every kernel that a solve can call, so that its time is the planner's alone.
+    si = setup.getSpaceInformation()
+    state = si.allocState()
+    write_configuration(state, request.scenario.start, request.cspace)
+    si.isValid(state)
+    si.checkMotion(state, state)
+    if isinstance(request.entry, OwnPlanner):
+        if hasattr(planner, "warm_up"):
+            planner.warm_up()
+        return
+    sampler = si.allocValidStateSampler()
+    sampler.sampleNear(state, state, 1e-3)
+    sampler.sample(state)
+
+
+def simplified_path(
+    request: Request, si: ob.SpaceInformation, found: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The path ``found`` (m, d) shortened by OMPL's simplification, certified if it was before.
+
+    Raises:
+        KeyboardInterrupt: SIGINT arrived; the simplification has returned.
+    """
+    condition = bindings.stop_after(SIMPLIFICATION_LIMIT)
+    with bindings.interruptible(condition) as interruption:
+        shorter = bindings.simplified(si, found, state_access(request.cspace), condition)
+    if interruption.requested:
+        raise KeyboardInterrupt
+    # Simplification ends with a repair that moves states, and halves segments: certify again.
+    if is_certified(request.cspace, shorter) or not is_certified(request.cspace, found):
+        return shorter
+    return found
+
+
+def planner_statistics(planner: ob.Planner) -> dict[str, Any]:
+    """A planner's own counts: what ours keep themselves, a bound one's vertices and edges."""
+    if not bindings.is_bound(planner):
+        return dict(getattr(planner, "statistics", {}))
+    size = bindings.graph_size_of_planner(planner)
+    return {} if size is None else {"vertices": size[0], "edges": size[1]}

@@ -59,6 +59,10 @@ def _rebuild_scenario_error(
     return ScenarioError(problem, file=file, field=field, line=line, column=column)
 
 
+class FamilyError(EllipsoidPlanningError):
+    """An unknown family of scenarios, or a clearance, dimension or seed that it does not have."""
+
+
 class PlannerError(EllipsoidPlanningError):
     """An unknown planner, an unknown parameter, or a parameter out of its range."""
 

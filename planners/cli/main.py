@@ -8,6 +8,7 @@ import typer
 
 from ellipsoid_planning import __version__
 from planners.cli.command_group import CommandGroup
+from planners.cli.family import family
 from planners.cli.figure import figure
 from planners.cli.interrupt import end_on_interrupt
 from planners.cli.plan import plan
@@ -61,7 +62,7 @@ def _root(
     """
 
 
-for command in (plan, show, figure, scenarios, verify, schema):
+for command in (plan, show, figure, scenarios, family, verify, schema):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
 
 

@@ -13,6 +13,9 @@ from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
 
+# Pairs of bodies that a layer remembers; a line meets few of a large world's.
+_MOST_WHITENED = 1 << 12
+
 
 class Layer:
     """The free space of one orientation, looked at along sweep lines.
@@ -32,8 +35,9 @@ class Layer:
         parts, bodies = len(robot.parts), len(world.obstacles) + len(world.arenas)
         self._placed = np.empty((parts, layout.PLACED))
         placement.place(scene, 0.0, 0.0, 0.0, *quaternion, self._placed)
-        self._table = np.empty((max(parts * bodies, 1), whitening.WHITEN))
-        self._keys = np.full(max(parts * bodies, 1), -1, dtype=np.int64)
+        rows = min(max(parts * bodies, 1), _MOST_WHITENED)
+        self._table = np.empty((rows, whitening.WHITEN))
+        self._keys = np.full(rows, -1, dtype=np.int64)
         self._scratch = np.empty((1, 9))
 
     def free_intervals(self, position: ArrayLike, axis: int = -1) -> Array:
@@ -54,10 +58,17 @@ class Layer:
                 f"got shape {values.shape} and axis {axis}"
             )
         point[:n] = values
-        out = np.empty((lines.CAPACITY, 2))
         cache = (self._table, self._keys, self._scratch)
-        count = lines.free_intervals(self._scene, self._placed, 0, *cache, axis % n, *point, out)
-        return out[:count]
+        room = lines.CAPACITY
+        while True:
+            out = np.empty((room, 2))
+            count = lines.free_intervals(
+                self._scene, self._placed, 0, *cache, axis % n, *point, out
+            )
+            # A full table may have cost free space.
+            if count < room:
+                return out[:count]
+            room *= 2
 
     def obstacle_pairs(self) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
         """Pairs (obstacle, part) whose Minkowski sum, part centred at 0, is a C-obstacle.

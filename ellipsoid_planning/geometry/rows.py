@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +24,13 @@ def _embedded(body: Ellipsoid, third_axis: float) -> tuple[Array, Array, Array]:
 
 
 def grown_axes(semi_axes: Array, distance: float) -> Array:
-    """Semi-axes of an ellipsoid that encloses the body's offset by ``distance``.
+    """Semi-axes (…, n) of ellipsoids that enclose the bodies' offsets by ``distance``.
 
     The member (1 + 1/p)Σ + (1 + p)r²I of the Kurzhanski family, p near its best.
     """
     if distance <= 0.0:
         return semi_axes
-    p = math.sqrt(float(np.mean(semi_axes**2))) / distance
+    p = np.sqrt(np.mean(semi_axes**2, axis=-1, keepdims=True)) / distance
     return np.sqrt((1.0 + 1.0 / p) * semi_axes**2 + (1.0 + p) * distance**2)
 
 
@@ -56,21 +56,53 @@ def shrunk_axes(semi_axes: Array, distance: float) -> Array:
     return np.sqrt(squares[best])
 
 
-def body_row(body: Ellipsoid, other_axes: Array | None = None) -> Array:
-    """One obstacle or arena as BODY numbers; ``other_axes`` (n,) replace its axes in whitening."""
-    third = float(body.semi_axes.min())
-    centre, rotation, axes = _embedded(body, third)
-    other = axes if other_axes is None else other_axes
-    other = other if len(other) == 3 else np.append(other, float(other.min()))
-    row = np.zeros(layout.BODY)
-    matrix = rotation * axes
-    row[layout.BODY_CENTRE : layout.BODY_CENTRE + 3] = centre
-    row[layout.BODY_MATRIX : layout.BODY_MATRIX + 9] = matrix.ravel()
-    row[layout.BODY_WHITEN : layout.BODY_WHITEN + 9] = (rotation / other).T.ravel()
-    row[layout.BODY_INVERSE : layout.BODY_INVERSE + 9] = (rotation / axes).T.ravel()
-    row[layout.BODY_RADIUS] = body.semi_axes.max()
-    row[layout.BODY_EXTENT : layout.BODY_EXTENT + 3] = np.linalg.norm(matrix, axis=1)
-    return row
+def body_rows(bodies: Sequence[Ellipsoid], other_axes: Array | None = None) -> Array:
+    """Obstacles or arenas of one dimension n as rows (m, BODY).
+
+    ``other_axes`` (m, n) replace the semi-axes in whitening.
+    """
+    rows = np.zeros((len(bodies), layout.BODY))
+    if not bodies:
+        return rows
+    n = bodies[0].dimension
+    rotation = np.zeros((len(bodies), 3, 3))
+    rotation[:, 2, 2] = 1.0  # stays for planar bodies, which stand in z = 0
+    rotation[:, :n, :n] = [body.rotation for body in bodies]
+    own = np.array([body.semi_axes for body in bodies])
+    axes, other = _three(own), _three(own if other_axes is None else other_axes)
+    matrix = rotation * axes[:, None, :]
+    rows[:, layout.BODY_CENTRE : layout.BODY_CENTRE + n] = [body.centre for body in bodies]
+    rows[:, layout.BODY_MATRIX : layout.BODY_MATRIX + 9] = matrix.reshape(-1, 9)
+    rows[:, layout.BODY_WHITEN : layout.BODY_WHITEN + 9] = _inverses(rotation, other)
+    rows[:, layout.BODY_INVERSE : layout.BODY_INVERSE + 9] = _inverses(rotation, axes)
+    rows[:, layout.BODY_RADIUS] = own.max(axis=1)
+    rows[:, layout.BODY_EXTENT : layout.BODY_EXTENT + 3] = np.linalg.norm(matrix, axis=2)
+    return rows
+
+
+def _three(axes: Array) -> Array:
+    """Semi-axes (m, 3) of (m, n); the third axis of planar bodies is their smallest."""
+    if axes.shape[1] == 3:
+        return axes
+    return np.column_stack([axes, axes.min(axis=1)])
+
+
+def _inverses(rotation: Array, axes: Array) -> Array:
+    """diag(1/a) Rᵀ of every row, row-major (m, 9)."""
+    return (rotation / axes[:, None, :]).transpose(0, 2, 1).reshape(-1, 9)
+
+
+def body_row(body: Ellipsoid) -> Array:
+    """One obstacle or arena as BODY numbers."""
+    return body_rows((body,))[0]
+
+
+def farthest_of(rows: Array) -> float:
+    """An upper bound of the distance from the origin of the points of body rows; 0 for none."""
+    if not len(rows):
+        return 0.0
+    centres = rows[:, layout.BODY_CENTRE : layout.BODY_CENTRE + 3]
+    return float(np.max(np.linalg.norm(centres, axis=1) + rows[:, layout.BODY_RADIUS]))
 
 
 def farthest(part: Ellipsoid) -> float:

@@ -2,7 +2,7 @@
 
 import math
 
-from .broad_phase import next_overlap
+from .broad_phase import near_obstacle, next_overlap
 from .compile import inlined, kernel
 from .containment import GROW_PART, SHRINK_ARENA, arena_extent
 from .layout import (
@@ -156,6 +156,14 @@ def _arena_gap(arenas, a, placed, i, scene):
 
 
 @kernel
+def _obstacle_gap(obstacles, j, parts, placed, i, scene):
+    """Lower bound of the distance of part ``i`` and obstacle ``j``."""
+    lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
+    value = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)[0]
+    return value - ROUNDING * scene[SCALE]
+
+
+@kernel
 def clearance_of(scene, x, y, z, qx, qy, qz, qw):
     """Lower bound of the distance to obstacles and arena boundaries; negative where they meet.
 
@@ -174,6 +182,10 @@ def clearance_of(scene, x, y, z, qx, qy, qz, qw):
         cx = placed[i, PLACED_CENTRE]
         cy = placed[i, PLACED_CENTRE + 1]
         cz = placed[i, PLACED_CENTRE + 2]
+        # A near obstacle comes first, so that the box is small from the beginning.
+        near = near_obstacle(tree, cx, cy, cz)
+        if near >= 0:
+            best = min(best, _obstacle_gap(obstacles, near, parts, placed, i, scene))
         node = 0
         while node >= 0 and node < tree.shape[0]:
             # The box shrinks as better distances are found.
@@ -185,9 +197,8 @@ def clearance_of(scene, x, y, z, qx, qy, qz, qw):
             if node < 0:
                 break
             j = int(tree[node, NODE_OBSTACLE])
-            lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
-            value = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)[0]
-            best = min(best, value - ROUNDING * scene[SCALE])
+            if j != near:
+                best = min(best, _obstacle_gap(obstacles, j, parts, placed, i, scene))
             node += 1
     return best
 

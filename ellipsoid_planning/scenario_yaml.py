@@ -26,34 +26,41 @@ def scenario_text(scenario: Scenario) -> str:
 def _block(mapping: Mapping[str, Any], indent: str) -> Iterator[str]:
     """The lines of a mapping in block style."""
     for key, value in mapping.items():
-        bodies = isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
         if key == "description" and _foldable(value):
             yield f"{indent}{key}: >-"
-            yield from textwrap.wrap(
-                value,
-                WIDTH,
-                initial_indent=indent + "  ",
-                subsequent_indent=indent + "  ",
-                break_long_words=False,
-                break_on_hyphens=False,
-            )
-        elif bodies:
+            yield from _folded(value, indent + "  ")
+        elif _is_bodies(value):
             yield f"{indent}{key}:"
             for body in value:
                 first, *rest = _block(body, indent + "    ")
                 yield f"{indent}  - {first.strip()}"
                 yield from rest
-        elif isinstance(value, Mapping) and not _short(indent, key, value):
+        elif isinstance(value, Mapping) and not _fits_a_line(indent, key, value):
             yield f"{indent}{key}:"
             yield from _block(value, indent + "  ")
         else:
             yield f"{indent}{key}: {_flow(value)}"
 
 
-def _short(indent: str, key: str, value: Mapping[str, Any]) -> bool:
-    nested = any(isinstance(entry, list) and entry for entry in value.values())
-    text = f"{indent}{key}: {_flow(value)}"
-    return len(text) <= WIDTH and not (nested and key == "robot")
+def _folded(text: str, indent: str) -> list[str]:
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _is_bodies(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
+
+
+def _fits_a_line(indent: str, key: str, value: Mapping[str, Any]) -> bool:
+    if any(_is_bodies(entry) for entry in value.values()):
+        return False
+    return len(f"{indent}{key}: {_flow(value)}") <= WIDTH
 
 
 def _foldable(text: str) -> bool:

@@ -8,9 +8,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ellipsoid_planning.errors import FamilyError
+from ellipsoid_planning.families.bend import bend
+from ellipsoid_planning.families.chain_of_gaps import chain_of_gaps
 from ellipsoid_planning.families.draws import Draws
 from ellipsoid_planning.families.gap import gap, turned_gap
 from ellipsoid_planning.families.scene import FamilyScene, Layout, Request, place
+from ellipsoid_planning.families.slot_3d import slot_3d
+from ellipsoid_planning.families.tight_arena import tight_arena
 from ellipsoid_planning.families.window_3d import window_3d
 from ellipsoid_planning.scenario import Scenario
 
@@ -39,6 +43,22 @@ FAMILIES = {
     ),
     "window-3d": Family(
         window_3d, "a hole among three or four bodies that the robot must be turned for", (3,)
+    ),
+    "slot-3d": Family(
+        slot_3d,
+        "a slot three robot lengths long between long bodies, equally tight in three places",
+        (3,),
+    ),
+    "bend": Family(
+        bend, "a bend so tight that the robot must turn inside, with three equally tight places"
+    ),
+    "chain-of-gaps": Family(
+        chain_of_gaps,
+        "three gaps in a row, with a room between each and the next, that need three orientations",
+    ),
+    "tight-arena": Family(
+        tight_arena,
+        "half a turn in an arena that the robot can stand upright in only in the middle",
     ),
 }
 

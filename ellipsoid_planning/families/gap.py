@@ -26,18 +26,19 @@ ARENA = (12.0, 8.0, 8.0)
 
 def gap(request: Request) -> Layout:
     """A wall with an opening; start and goal have the orientation that fits."""
-    shape, opening = _shape_and_opening(request)
+    shape, opening = shape_and_opening(request)
     return one_wall(request, shape, opening, fits=True)
 
 
 def turned_gap(request: Request) -> Layout:
     """The same, with start and goal far from the orientation that fits."""
-    shape, opening = _shape_and_opening(request)
+    shape, opening = shape_and_opening(request)
     canonical = turn(request.dimension, 37.3, 21.9, 11.7)
     return dataclasses.replace(one_wall(request, shape, opening, fits=False), turned=canonical)
 
 
-def _shape_and_opening(request: Request) -> tuple[Shape, Opening]:
+def shape_and_opening(request: Request) -> tuple[Shape, Opening]:
+    """The robot, and the opening that a gap of this dimension is."""
     shape = long_shape(request.draws, request.dimension)
     if request.dimension == 2:
         return shape, pair(2)

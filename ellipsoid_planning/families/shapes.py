@@ -66,13 +66,16 @@ class Shape:
         return centre - base_rotation @ self.shifted, base_rotation
 
 
-def long_shape(draws: Draws, dimension: int, flatness: float = 1.6) -> Shape:
+def long_shape(
+    draws: Draws, dimension: int, flatness: float = 1.6, outline: float = OUTLINE
+) -> Shape:
     """A long robot of one to three parts whose other parts hide in the main part's shadow.
 
     Args:
         draws: of the scene.
         dimension: n.
         flatness: b / c of the canonical robot, n = 3.
+        outline: how much of the main part's outline the other parts may fill.
     """
     thin = draws.number(0.4, 0.34, 0.46)
     long = thin * draws.number(3.0, 2.6, 3.2)
@@ -80,7 +83,7 @@ def long_shape(draws: Draws, dimension: int, flatness: float = 1.6) -> Shape:
     axes = [long, thin] if dimension == 2 else [long, thin, medium]
     main = Ellipsoid.from_semi_axes(axes, name="hull")
     others = [
-        _hidden(draws, main, side, name)
+        _hidden(draws, main, side, name, outline)
         for side, name in ((-1.0, "tail"), (1.0, "nose"))[: draws.integer(1, 0, 2)]
     ]
     return Shape((main, *others), *base_frame(draws, main))
@@ -94,7 +97,7 @@ def base_frame(draws: Draws, main: Ellipsoid) -> tuple[Array, Array]:
     return turned, draws.vector(np.zeros(n), inside)
 
 
-def _hidden(draws: Draws, main: Ellipsoid, side: float, name: str) -> Ellipsoid:
+def _hidden(draws: Draws, main: Ellipsoid, side: float, name: str, outline: float) -> Ellipsoid:
     """A part at one end of the main part, within its outline as seen along its longest axis."""
     n, axes = main.dimension, main.semi_axes
     smaller = draws.number(0.6, 0.5, 0.7)
@@ -103,7 +106,7 @@ def _hidden(draws: Draws, main: Ellipsoid, side: float, name: str) -> Ellipsoid:
     centre = np.append(side * axes[0] * draws.number(0.7, 0.55, 0.75), beside)
     tilt = turn(n, draws.number(0.0, -8.0, 8.0), draws.number(0.0, -8.0, 8.0))
     part = Ellipsoid(centre, tilt, semi_axes, name)
-    scale = min(1.0, OUTLINE / _outline_share(main, part))
+    scale = min(1.0, outline / _outline_share(main, part))
     centre[1:] *= scale
     return Ellipsoid(centre, tilt, semi_axes * scale, name)
 

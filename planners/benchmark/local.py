@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
 from planners.benchmark.run import RunRecord, RunTask
@@ -13,16 +13,19 @@ _LOOK_EVERY = 0.1  # [s]
 
 
 def run_locally(
-    tasks: Sequence[RunTask], jobs: int, interrupted: threading.Event
+    tasks: Sequence[RunTask],
+    jobs: int,
+    interrupted: threading.Event,
+    begins: Callable[[RunTask], None],
 ) -> Iterator[RunRecord]:
-    """The records of ``tasks`` as they come, ``jobs`` of them at a time.
+    """The records of ``tasks`` as they come, ``jobs`` of them at a time; ``begins`` tells of each.
 
     Once ``interrupted`` is set, or the caller takes no more, the running ones are killed.
     """
     stop = threading.Event()
     with ThreadPoolExecutor(jobs) as pool:
         try:
-            yield from _as_they_come(pool, tasks, jobs, interrupted, stop)
+            yield from _as_they_come(pool, tasks, jobs, begins, interrupted, stop)
         finally:
             stop.set()
 
@@ -31,6 +34,7 @@ def _as_they_come(
     pool: ThreadPoolExecutor,
     tasks: Sequence[RunTask],
     jobs: int,
+    begins: Callable[[RunTask], None],
     interrupted: threading.Event,
     stop: threading.Event,
 ) -> Iterator[RunRecord]:
@@ -38,7 +42,9 @@ def _as_they_come(
     running: set[Future[RunRecord]] = set()
     while waiting or running:
         while waiting and len(running) < jobs:
-            running.add(pool.submit(run_one, waiting.pop(), stop.is_set))
+            task = waiting.pop()
+            begins(task)
+            running.add(pool.submit(run_one, task, stop.is_set))
         done, running = wait(running, _LOOK_EVERY, FIRST_COMPLETED)
         for future in done:
             yield future.result()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -45,16 +46,41 @@ class Problem:
         """The experiment's parameters for OMPL's log, values by "name TYPE"."""
         if self.family is None or self.clearance is None:
             return {}
-        return {"family TEXT": slug(self.family), "clearance REAL": repr(self.clearance)}
+        return {"family TEXT": self.family, "clearance REAL": repr(self.clearance)}
+
+
+_FAMILY_NAME = re.compile(
+    r"(?P<family>\S+) (?P<dimension>[23])-D, clearance (?P<clearance>[^\s,]+)"
+)
+"""How the command ``family`` begins a scenario's name; it may go on with a seed."""
 
 
 def scenario_problems(scenarios: Iterable[Scenario]) -> tuple[Problem, ...]:
-    """A problem for each scenario; scenarios of one name are numbered."""
+    """A problem for each scenario; scenarios of one name are numbered.
+
+    Those that the command ``family`` made are told from their names.
+    """
     problems: dict[str, Problem] = {}
     for scenario in scenarios:
         name = _unused(slug(scenario.name), problems)
-        problems[name] = Problem(name, (scenario.to_dict(),))
+        problems[name] = Problem(name, (scenario.to_dict(),), *_family_of(scenario.name))
     return tuple(problems.values())
+
+
+def _family_of(name: str) -> tuple[str | None, float | None]:
+    found = _FAMILY_NAME.match(name)
+    if found is None or name.endswith(("blocked", "without passage")):
+        return None, None
+    try:
+        clearance = float(found["clearance"])
+    except ValueError:
+        return None, None
+    return _family_title(found["family"], int(found["dimension"])), clearance
+
+
+def _family_title(family: str, dimension: int) -> str:
+    suffix = f"-{dimension}d"
+    return slug(family).removesuffix(suffix) + suffix
 
 
 def _unused(name: str, taken: Iterable[str]) -> str:
@@ -66,21 +92,22 @@ def _unused(name: str, taken: Iterable[str]) -> str:
 
 
 def family_problems(
-    family: str, clearances: Sequence[float], dimension: int, runs: int, seed: int
+    family: str, clearances: Sequence[float], dimension: int | None, runs: int, seed: int
 ) -> tuple[Problem, ...]:
     """A problem for each clearance of a family, each run with the scenario of its own seed.
 
     Raises:
-        EllipsoidPlanningError: unknown family, or one that does not exist in this dimension.
+        EllipsoidPlanningError: unknown family, or one that does not exist in this dimension or
+            at this clearance.
     """
     from ellipsoid_planning.families import make_family
 
-    name = f"{slug(family)}-{dimension}d"
     problems = []
     for clearance in clearances:
         drawn = [make_family(family, clearance, dimension, seed + run) for run in range(runs)]
+        title = _family_title(family, drawn[0].dimension)
         scenarios = tuple(scenario.to_dict() for scenario in drawn)
-        problems.append(Problem(f"{name}-{scientific(clearance)}", scenarios, name, clearance))
+        problems.append(Problem(f"{title}-{scientific(clearance)}", scenarios, title, clearance))
     return tuple(problems)
 
 

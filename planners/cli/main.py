@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from ellipsoid_planning import __version__
+from planners.cli.benchmark import benchmark
 from planners.cli.command_group import CommandGroup
 from planners.cli.family import family
 from planners.cli.figure import figure
@@ -62,7 +63,7 @@ def _root(
     """
 
 
-for command in (plan, show, figure, scenarios, family, verify, schema):
+for command in (plan, show, figure, scenarios, family, verify, benchmark, schema):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
 
 

@@ -1,0 +1,107 @@
+"""The runs of a campaign, with their progress on stderr."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
+
+from planners.cli.terminal import say
+
+if TYPE_CHECKING:
+    from planners.benchmark.campaign import Campaign
+    from planners.benchmark.run import RunRecord, RunTask
+    from planners.benchmark.store import Store
+
+
+class _Progress(Protocol):
+    """How far a campaign is."""
+
+    def begins(self, task: RunTask) -> None:
+        """A run begins."""
+
+    def ends(self, record: RunRecord) -> None:
+        """A run has ended."""
+
+
+def run_campaign(
+    campaign: Campaign, store: Store, jobs: int, interrupted: threading.Event
+) -> list[RunRecord]:
+    """Run what the store does not hold yet, keep every run at once, and return all there is."""
+    from planners.benchmark.local import run_locally
+
+    tasks = list(campaign.tasks())
+    records = {task.key: store.finished(task) for task in tasks}
+    missing = [task for task in tasks if records[task.key] is None]
+    if len(missing) < len(tasks):
+        say(f"Going on: {len(tasks) - len(missing)} of {len(tasks)} runs are there already.")
+    if missing:
+        with _progress(len(tasks), len(tasks) - len(missing), campaign.runs) as progress:
+            for record in run_locally(missing, jobs, interrupted, progress.begins):
+                store.keep(record)
+                records[record.key] = record
+                progress.ends(record)
+    return [record for record in records.values() if record is not None]
+
+
+@contextmanager
+def _progress(total: int, done: int, runs: int) -> Iterator[_Progress]:
+    if not sys.stderr.isatty():
+        yield _Lines(total, done)
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        BarColumn(bar_width=24),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        TextColumn("{task.description}", markup=False),
+    )
+    # The runs differ by orders of magnitude: all that have ended count for the time left.
+    with Progress(*columns, console=Console(stderr=True), speed_estimate_period=1e9) as bar:
+        row = bar.add_task("", total=total, completed=done)
+        yield _Bar(lambda text, ended: bar.update(row, description=text, advance=ended), runs)
+
+
+class _Bar:
+    """A bar for a terminal, with what is running now."""
+
+    def __init__(self, update: Callable[[str | None, int], None], runs: int) -> None:
+        self._update, self._runs = update, runs
+
+    def begins(self, task: RunTask) -> None:
+        text = f"{task.label} · run {task.run + 1} of {self._runs} · {task.problem}"
+        self._update(text, 0)
+
+    def ends(self, _: RunRecord) -> None:
+        self._update(None, 1)
+
+
+class _Lines:
+    """A line for each run that has ended, for files and pipes."""
+
+    def __init__(self, total: int, done: int) -> None:
+        self._total, self._done = total, done
+
+    def begins(self, task: RunTask) -> None:
+        """Nothing is said yet."""
+
+    def ends(self, record: RunRecord) -> None:
+        from planners.benchmark.tables import duration
+
+        self._done += 1
+        how = duration(record.seconds) if record.solved else record.reason
+        where = f"{record.problem}, {record.label}, run {record.run + 1}"
+        say(f"[{self._done}/{self._total}] {where}: {record.status}, {how}")

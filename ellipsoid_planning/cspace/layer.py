@@ -14,7 +14,7 @@ from ellipsoid_planning.world import World
 Array = NDArray[np.float64]
 
 # Pairs of bodies that a layer remembers; a line meets few of a large world's.
-_MOST_WHITENED = 1 << 12
+_MOST_WHITENED = 1 << 14
 
 
 class Layer:

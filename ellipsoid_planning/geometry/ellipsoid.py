@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -154,7 +155,9 @@ class Ellipsoid:
 
     def with_name(self, name: str) -> Ellipsoid:
         """Return the same ellipsoid under another name."""
-        return Ellipsoid(self.centre, self.rotation, self.semi_axes, name)
+        named = copy.copy(self)  # shares the arrays, which are read-only and checked already
+        object.__setattr__(named, "name", name)
+        return named
 
     def _checked_rows(self, rows: ArrayLike) -> NDArray[np.float64]:
         array = np.asarray(rows, dtype=float)

@@ -42,52 +42,62 @@ def _link(neighbours, row, first, other):
 
 
 @kernel
-def _join_nearest(distances, neighbours, new, count, first):
-    """Join row ``new`` both ways to the ``count`` rows before it of least distance.
+def _join_nearest(distances, neighbours, new, count, first, both_ways):
+    """Join row ``new`` to the ``count`` rows before it of least distance.
 
-    Their own rows take it from place ``first`` on.
+    If ``both_ways``, their own rows take it from place ``first`` on.
     """
     for _ in range(min(count, new)):
         best = 0
         for k in range(1, new):
             if distances[k] < distances[best]:
                 best = k
+        if not distances[best] < math.inf:
+            return
         _link(neighbours, new, 0, best)
-        _link(neighbours, best, first, new)
+        if both_ways:
+            _link(neighbours, best, first, new)
         distances[best] = math.inf
 
 
 @kernel
-def find_column(columns, neighbours, count, distances, x, y, z):
+def find_column(columns, neighbours, count, distances, passing, joins, x, y, z):
     """Index of the column at (x, y, z), whose swept coordinate is 0: an old one, or ``count``.
 
-    A new one is written there and joined to the 4 nearest columns. ``distances`` (≥ count) is
-    workspace.
+    A new one is written there and joined to the 4 nearest columns that are not ``passing`` (C,);
+    both ways if ``joins``, else it is passing itself. ``distances`` (≥ count) is workspace.
     """
     for k in range(count):
         dx, dy, dz = columns[k, 0] - x, columns[k, 1] - y, columns[k, 2] - z
         distances[k] = math.sqrt(dx * dx + dy * dy + dz * dz)
         if distances[k] == 0.0:
             return k
+        if passing[k]:
+            distances[k] = math.inf
     columns[count, 0], columns[count, 1], columns[count, 2] = x, y, z
-    _join_nearest(distances, neighbours, count, 4, 0)
+    passing[count] = not joins
+    _join_nearest(distances, neighbours, count, 4, 0, joins)
     return count
 
 
 @kernel
-def find_layer(orientations, neighbours, count, distances, q, joined):
+def find_layer(orientations, neighbours, count, distances, passing, joins, q, joined):
     """Index of the layer with exactly the quaternion ``q`` (4,): an old one, or ``count``.
 
-    A new one is written there and joined to its ``joined`` nearest layers.
+    A new one is written there and joined to its ``joined`` nearest layers that are not
+    ``passing`` (L,); both ways if ``joins``, else it is passing itself.
     """
     for k in range(count):
         p = orientations[k]
         distances[k] = 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
         if p[0] == q[0] and p[1] == q[1] and p[2] == q[2] and p[3] == q[3]:
             return k
+        if passing[k]:
+            distances[k] = math.inf
     for m in range(4):
         orientations[count, m] = q[m]
-    _join_nearest(distances, neighbours, count, joined, joined)
+    passing[count] = not joins
+    _join_nearest(distances, neighbours, count, joined, joined, joins)
     return count
 
 

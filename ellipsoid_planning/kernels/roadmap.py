@@ -25,9 +25,15 @@ from .roadmap_metric import across, angle, apart, heuristic, step_length, write_
 from .roadmap_tables import (
     COLUMN_STRIDE,
     EDGES,
+    END_LENGTH,
+    END_NEAREST,
+    END_TRIED,
+    END_USED,
+    ENDS,
     ENTRIES,
     EXHAUSTED,
     EXPANSIONS,
+    FIRST_PASSAGE,
     FREE_ENTRY,
     GOAL_REACHED,
     GROW,
@@ -45,19 +51,27 @@ from .roadmap_tables import (
     NODE_LOW,
     NODE_PARENT,
     NODE_STAMP,
+    NODE_VIA,
     NODES,
+    OFFERED,
     OPEN,
     OWN_LAYERS,
+    PASSAGES_USED,
     PROVED,
     QUERY,
     REFUTED,
     SEARCHING,
     SOLVED,
+    STEPS,
 )
 from .validity import placed_is_free
 
 # Rise over run beyond which intervals that do not overlap are not worth trying to join.
 _STEEPEST = 3.0
+# A passage is tried from a node only if that is nearer to it by this factor than those before.
+_NEARER = 0.8
+# So it is tried from no more nodes than this at once.
+_OFFERS = 64
 
 
 @kernel
@@ -102,18 +116,24 @@ def line_nodes(scene, rm, layer, column, axis, intervals):
     return first, count
 
 
-@inlined
+@kernel
 def node_at(scene, rm, layer, column, swept, axis, intervals):
-    """The line's node whose interval is nearest to ``swept``, or −1 if the line is blocked."""
+    """The node of the line's interval that holds ``swept``, or a new one of that point alone.
+
+    The point is free, but intervals keep a tolerance, and more where parts all but fill an arena.
+    """
     first, count = line_nodes(scene, rm, layer, column, axis, intervals)
-    best, nearest = math.inf, -1
     for node in range(first, first + count):
-        below = rm.node_reals[node, NODE_LOW] - swept
-        above = swept - rm.node_reals[node, NODE_HIGH]
-        away = max(0.0, max(below, above))
-        if away < best:
-            best, nearest = away, node
-    return nearest
+        if rm.node_reals[node, NODE_LOW] <= swept and swept <= rm.node_reals[node, NODE_HIGH]:
+            return node
+    node = rm.counters[NODES]
+    rm.counters[NODES] += 1
+    rm.node_integers[node, NODE_LAYER] = layer
+    rm.node_integers[node, NODE_COLUMN] = column
+    rm.node_integers[node, NODE_STAMP] = 0
+    rm.node_reals[node, NODE_LOW] = swept
+    rm.node_reals[node, NODE_HIGH] = swept
+    return node
 
 
 @kernel
@@ -274,9 +294,10 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
 
 
 @inlined
-def _reach(rm, node, parent, leave, entry, cost):
+def _reach(rm, node, parent, leave, entry, cost, via):
     rm.node_integers[node, NODE_STAMP] = rm.counters[QUERY]
     rm.node_integers[node, NODE_PARENT] = parent
+    rm.node_integers[node, NODE_VIA] = via
     rm.node_reals[node, NODE_COST] = cost
     rm.node_reals[node, NODE_ENTRY] = entry
     rm.node_reals[node, NODE_LEAVE] = leave
@@ -284,11 +305,12 @@ def _reach(rm, node, parent, leave, entry, cost):
 
 @inlined
 def _expand(rm, node, axis, goals, inflation, weight):
-    """Promise every line next to ``node``."""
+    """Promise every line next to ``node``; in the layer of a passage only from its own column."""
     layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+    leaving = rm.passing_layers[layer] and not rm.passing_columns[column]
     for k in range(rm.column_neighbours.shape[1]):
         other = rm.column_neighbours[column, k]
-        if other >= 0:
+        if other >= 0 and not leaving:
             _promise(rm, node, layer, other, axis, goals, inflation, weight)
     if rm.layer_neighbours[layer, 0] == UNKNOWN:
         own, joined = rm.counters[OWN_LAYERS], rm.counters[JOINED]
@@ -318,34 +340,82 @@ def _meets_goal(scene, rm, node, axis, goals, ends, placed):
 
 
 @kernel
-def begin(scene, rm, starts, goals, axis, inflation, weight):
-    """Start a query: rows of ``starts`` and ``goals`` are (layer, x, y, z, column).
+def _offer_passages(rm, node, first, axis, weight):
+    """Open the ways from ``node`` into passages whose end is the nearest node yet to it."""
+    layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
+    entry, query = rm.node_reals[node, NODE_ENTRY], rm.counters[QUERY]
+    for end in range(first, rm.counters[ENDS]):
+        if rm.end_integers[end, END_USED] == query:
+            continue
+        row = rm.end_reals[end : end + 1]
+        away = heuristic(rm.orientations, rm.columns, layer, column, entry, axis, row, weight)
+        if rm.end_integers[end, END_TRIED] == query:
+            if away > _NEARER * rm.end_reals[end, END_NEAREST]:
+                continue
+        rm.end_integers[end, END_TRIED] = query
+        rm.end_reals[end, END_NEAREST] = away
+        cost = rm.node_reals[node, NODE_COST] + away
+        # Ahead of everything else: there are few, and a passage may be the only way.
+        _open(rm, 0.0, cost, entry, -1, node, FIRST_PASSAGE - end)
 
-    Returns SEARCHING, or EXHAUSTED if no start has a free interval.
-    """
+
+@inlined
+def _offer_new_passages(rm, axis, weight):
+    """Offer passages that were found since the query's last step to the nodes reached so far."""
+    if rm.counters[OFFERED] < rm.counters[ENDS]:
+        for node in range(rm.counters[NODES]):
+            if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
+                _offer_passages(rm, node, rm.counters[OFFERED], axis, weight)
+        rm.counters[OFFERED] = rm.counters[ENDS]
+
+
+@inlined
+def _pass_through(scene, rm, parent, end, axis, ends, placed, intervals):
+    """The node at the other side of a passage that is entered from ``parent``, or −1."""
+    if rm.end_integers[end, END_USED] == rm.counters[QUERY]:
+        return -1
+    entry = rm.node_reals[parent, NODE_ENTRY]
+    write_pose(rm.orientations, rm.columns, rm.node_integers, parent, entry, axis, ends[0])
+    for m in range(3):
+        ends[1, m] = rm.end_reals[end, 1 + m]
+    for m in range(4):
+        ends[1, 3 + m] = rm.orientations[int(rm.end_reals[end, 0]), m]
+    if not (_middle_is_free(scene, ends, placed) and is_proved(scene, rm, ends)):
+        rm.counters[REFUTED] += 1
+        return -1
+    rm.counters[PROVED] += 1
+    rm.counters[PASSAGES_USED] += 1
+    rm.end_integers[end, END_USED] = rm.counters[QUERY]
+    rm.end_integers[end ^ 1, END_USED] = rm.counters[QUERY]
+    other = rm.end_reals[end ^ 1]
+    return node_at(scene, rm, int(other[0]), int(other[4]), other[1 + axis], axis, intervals)
+
+
+@kernel
+def begin(scene, rm, starts, goals, axis, inflation, weight):
+    """Start a query: rows of ``starts`` and ``goals`` are (layer, x, y, z, column)."""
     intervals = np.empty((CAPACITY, 2))
     rm.counters[QUERY] += 1
     rm.counters[ENTRIES] = 0
     rm.counters[FREE_ENTRY] = -1
     rm.counters[OPEN] = 0
     rm.counters[GOAL_REACHED] = -1
+    rm.counters[OFFERED] = rm.counters[ENDS]
     for k in range(starts.shape[0]):
         swept = starts[k, 1 + axis]
         layer, column = int(starts[k, 0]), int(starts[k, 4])
         node = node_at(scene, rm, layer, column, swept, axis, intervals)
-        if node >= 0:
-            ahead = heuristic(
-                rm.orientations, rm.columns, layer, column, swept, axis, goals, weight
-            )
-            _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
-    return SEARCHING if rm.counters[OPEN] > 0 else EXHAUSTED
+        ahead = heuristic(rm.orientations, rm.columns, layer, column, swept, axis, goals, weight)
+        _open(rm, inflation * ahead, 0.0, swept, node, -1, -1)
+    return SEARCHING
 
 
 @inlined
 def _has_room(rm):
     """Whether every table has room for one more step of the search."""
     counters = rm.counters
-    branches = rm.column_neighbours.shape[1] + rm.layer_neighbours.shape[1]
+    branches = rm.column_neighbours.shape[1] + rm.layer_neighbours.shape[1] + counters[ENDS]
+    branches += _OFFERS * (counters[ENDS] - counters[OFFERED])
     return (
         counters[NODES] + 2 * CAPACITY < rm.node_reals.shape[0]
         and counters[EDGES] + 2 < rm.edge_reals.shape[0]
@@ -365,11 +435,15 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
     intervals = np.empty((CAPACITY, 2))
     ends = np.empty((2, 7))
     placed = new_placed(scene)
+    if not _has_room(rm):
+        return GROW
+    _offer_new_passages(rm, axis, weight)
     for _ in range(steps):
         if not _has_room(rm):
             return GROW
         if rm.counters[OPEN] == 0:
             return EXHAUSTED
+        rm.counters[STEPS] += 1
         item = pop(rm.heap, rm.heap_items, rm.counters[OPEN])
         rm.counters[OPEN] -= 1
         node, parent = rm.entry_integers[item, 0], rm.entry_integers[item, 1]
@@ -377,13 +451,23 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
         cost, leave = rm.entry_reals[item, 0], rm.entry_reals[item, 1]
         rm.entry_integers[item, 0] = rm.counters[FREE_ENTRY]
         rm.counters[FREE_ENTRY] = item
-        if node < 0:
+        via = -1
+        if line <= FIRST_PASSAGE:
+            via = FIRST_PASSAGE - line
+            node = _pass_through(scene, rm, parent, via, axis, ends, placed, intervals)
+            if node < 0:
+                continue
+        elif node < 0:
             _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals)
             continue
         if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
             continue
         if parent < 0:
-            _reach(rm, node, -1, leave, leave, 0.0)
+            _reach(rm, node, -1, leave, leave, 0.0, -1)
+        elif via >= 0:
+            other = rm.end_reals[via ^ 1]
+            cost += other[END_LENGTH]
+            _reach(rm, node, parent, leave, other[1 + axis], cost, via)
         else:
             entry = rm.node_reals[parent, NODE_ENTRY]
             za, zb, proved = _prove_edge(scene, rm, parent, node, entry, axis, ends)
@@ -393,10 +477,11 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             cost += step_length(
                 rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
             )
-            _reach(rm, node, parent, za, zb, cost)
+            _reach(rm, node, parent, za, zb, cost, -1)
         goal = _meets_goal(scene, rm, node, axis, goals, ends, placed)
         if goal >= 0:
             rm.counters[GOAL_REACHED] = node * goals.shape[0] + goal
             return SOLVED
         _expand(rm, node, axis, goals, inflation, weight)
+        _offer_passages(rm, node, 0, axis, weight)
     return SEARCHING

@@ -2,10 +2,17 @@
 
 import numpy as np
 
-from .compile import kernel
+from .compile import inlined, kernel
 from .roadmap import is_proved
 from .roadmap_metric import write_pose
-from .roadmap_tables import NODE_ENTRY, NODE_LEAVE, NODE_PARENT
+from .roadmap_tables import (
+    END_FIRST,
+    END_LAST,
+    NODE_ENTRY,
+    NODE_LEAVE,
+    NODE_PARENT,
+    NODE_VIA,
+)
 
 
 @kernel
@@ -22,12 +29,26 @@ def _append(path, count, pose):
     return count + 1
 
 
+@inlined
+def _append_passage(rm, end, path, count):
+    """Add the poses of a passage that is entered at ``end``; returns the new count."""
+    row, last = int(rm.end_reals[end, END_FIRST]), int(rm.end_reals[end, END_LAST])
+    forward = 1 if last >= row else -1
+    while row != last + forward:
+        count = _append(path, count, rm.passage_poses[row])
+        row += forward
+    return count
+
+
 @kernel
 def path_room(rm, last):
     """How many poses the path to node ``last`` and a goal can have at most."""
     count, node = 1, last
     while node >= 0:
         count += 2
+        via = rm.node_integers[node, NODE_VIA]
+        if via >= 0:
+            count += 1 + abs(int(rm.end_reals[via, END_LAST] - rm.end_reals[via, END_FIRST]))
         node = rm.node_integers[node, NODE_PARENT]
     return count
 
@@ -53,6 +74,9 @@ def trace(scene, rm, last, goal, goals, axis, path):
         leave = entry if following < 0 else rm.node_reals[following, NODE_LEAVE]
         write_pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
         write_pose(rm.orientations, rm.columns, rm.node_integers, node, leave, axis, ends[1])
+        via = rm.node_integers[node, NODE_VIA]
+        if via >= 0:
+            count = _append_passage(rm, via, path, count)
         if leave != entry and not is_proved(scene, rm, ends):
             return 0
         count = _append(path, count, ends[0])

@@ -28,14 +28,21 @@ OWN_LAYERS = 11
 JOINED = 12
 # The last entry that was taken out and can be used again, or −1; each links to the one before.
 FREE_ENTRY = 13
-COUNTERS = 14
+# Ends of passages, and how many of them the present query has looked at.
+ENDS = 14
+OFFERED = 15
+PASSAGES_USED = 16
+STEPS = 17
+COUNTERS = 18
 
 # Node columns of the integer table
 NODE_LAYER = 0
 NODE_COLUMN = 1
 NODE_PARENT = 2
 NODE_STAMP = 3
-NODE_INTEGERS = 4
+# The end of the passage that led here, or −1.
+NODE_VIA = 4
+NODE_INTEGERS = 5
 
 # Node columns of the real table: the interval, then what the present query knows
 NODE_LOW = 0
@@ -45,6 +52,20 @@ NODE_ENTRY = 3
 NODE_LEAVE = 4
 NODE_REALS = 5
 
+# Ends of passages, two a passage; the other end of ``e`` is ``e ^ 1``. First like rows of goals:
+# layer, x, y, z, column; then the passage's length, how near to the end a node of this query has
+# come, and the rows of poses from here to the other end.
+END_LENGTH = 5
+END_NEAREST = 6
+END_FIRST = 7
+END_LAST = 8
+END_REALS = 9
+END_TRIED = 0
+END_USED = 1
+END_INTEGERS = 2
+# The line of an entry that leads into a passage is FIRST_PASSAGE − end.
+FIRST_PASSAGE = -2
+
 # A line's key is layer · COLUMN_STRIDE + column; columns and layers may be added at any time.
 COLUMN_STRIDE = 1 << 20
 # A line holds at most CAPACITY nodes; its map value is first · LINE_BASE + count.
@@ -53,7 +74,7 @@ NODE_BITS = 31
 
 
 class Roadmap(NamedTuple):
-    """The arrays of one roadmap; all but the first six grow (kernels.roadmap tells how).
+    """The arrays of one roadmap; all but the first eight grow (kernels.roadmap tells how).
 
     Attributes:
         orientations: quaternions of the layers (L, 4).
@@ -61,6 +82,7 @@ class Roadmap(NamedTuple):
             a layer are looked for when it is first expanded.
         columns: base positions (C, 3), swept coordinate 0.
         column_neighbours: rows (C, D) of columns, filled up with −1.
+        passing_layers, passing_columns: (L,) and (C,), those that only lead out of passages.
         placed: parts of each layer (L, k, PLACED), base at the origin.
         ready: which layers are placed (L,).
         whitening, whitening_keys, scratch: cache of lines.
@@ -70,6 +92,8 @@ class Roadmap(NamedTuple):
         heap, heap_items: the open list's order.
         entry_reals: (N, 2): cost so far, swept coordinate at the parent.
         entry_integers: (N, 3): target node or −1, parent node, line of a promise.
+        end_reals, end_integers: tables of the ends of passages.
+        passage_poses: (P, 7), the poses of all passages.
         counters: (COUNTERS,).
         motion, motion_placed, motion_stack: workspaces of kernels.motion.
     """
@@ -78,6 +102,8 @@ class Roadmap(NamedTuple):
     layer_neighbours: NDArray[np.int64]
     columns: NDArray[np.float64]
     column_neighbours: NDArray[np.int64]
+    passing_layers: NDArray[np.bool_]
+    passing_columns: NDArray[np.bool_]
     placed: NDArray[np.float64]
     ready: NDArray[np.bool_]
     whitening: NDArray[np.float64]
@@ -92,6 +118,9 @@ class Roadmap(NamedTuple):
     heap_items: NDArray[np.int64]
     entry_reals: NDArray[np.float64]
     entry_integers: NDArray[np.int64]
+    end_reals: NDArray[np.float64]
+    end_integers: NDArray[np.int64]
+    passage_poses: NDArray[np.float64]
     counters: NDArray[np.int64]
     motion: NDArray[np.float64]
     motion_placed: NDArray[np.float64]

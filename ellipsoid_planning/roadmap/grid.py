@@ -93,6 +93,8 @@ class Grid:
         orientations: quaternions of the layers (≥ L, 4).
         layer_neighbours: (≥ L, K), filled up with −1; the rows of the grid's own layers are
             looked for when the search first needs them (kernels.grid.find_nearest).
+        passing_columns, passing_layers: (≥ C,) and (≥ L,), those that only lead out of passages:
+            no other column or layer has them for neighbours.
         column_count, layer_count: C and L.
         own_layers, joined: how many layers the grid began with, and to how many of them each is
             joined.
@@ -106,37 +108,55 @@ class Grid:
         self.columns = _with_spare_rows(columns, 0.0)
         self.column_neighbours = _with_spare_rows(_with_room(column_neighbours), -1)
         self.orientations = _with_spare_rows(orientations, 0.0)
+        self.passing_columns = np.zeros(len(self.columns), dtype=np.bool_)
+        self.passing_layers = np.zeros(len(self.orientations), dtype=np.bool_)
         self.own_layers = len(orientations)
         self.joined = min(neighbours, len(orientations) + QUERY_ROOM)
         unknown = np.full((len(orientations), self.joined), UNKNOWN, dtype=np.int64)
         self.layer_neighbours = _with_spare_rows(_with_room(unknown), -1)
         self._distances = np.empty(max(len(self.columns), len(self.orientations)))
 
-    def column_of(self, position: Array, axis: int) -> int:
-        """The column at ``position`` (3,), added and joined to those around it if it is new."""
+    def column_of(self, position: Array, axis: int, joins: bool = True) -> int:
+        """The column at ``position`` (3,), added and joined to those around it if it is new.
+
+        Unless it ``joins``, they are not joined to it.
+        """
         if self.column_count == len(self.columns):
             self.columns = _with_spare_rows(self.columns, 0.0)
             self.column_neighbours = _with_spare_rows(self.column_neighbours, -1)
+            self.passing_columns = np.pad(self.passing_columns, (0, SPARE_ROWS))
             self._distances = np.empty(max(len(self.columns), len(self.orientations)))
         point = position.copy()
         point[axis] = 0.0
         found = find_column(
-            self.columns, self.column_neighbours, self.column_count, self._distances, *point
+            self.columns,
+            self.column_neighbours,
+            self.column_count,
+            self._distances,
+            self.passing_columns,
+            joins,
+            *point,
         )
         self.column_count = max(self.column_count, found + 1)
         return int(found)
 
-    def layer_of(self, orientation: Array) -> int:
-        """The layer of a quaternion (4,), added and joined to its nearest if it is new."""
+    def layer_of(self, orientation: Array, joins: bool = True) -> int:
+        """The layer of a quaternion (4,), added and joined to its nearest if it is new.
+
+        Unless it ``joins``, they are not joined to it.
+        """
         if self.layer_count == len(self.orientations):
             self.orientations = _with_spare_rows(self.orientations, 0.0)
             self.layer_neighbours = _with_spare_rows(self.layer_neighbours, -1)
+            self.passing_layers = np.pad(self.passing_layers, (0, SPARE_ROWS))
             self._distances = np.empty(max(len(self.columns), len(self.orientations)))
         found = find_layer(
             self.orientations,
             self.layer_neighbours,
             self.layer_count,
             self._distances,
+            self.passing_layers,
+            joins,
             orientation,
             self.joined,
         )

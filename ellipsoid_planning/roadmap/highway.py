@@ -18,6 +18,7 @@ from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
+from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
 from ellipsoid_planning.roadmap.shorten import shorten
 
@@ -64,6 +65,7 @@ class HighwayRoadmap:
         self.cspace = cspace
         self.parameters = parameters or RoadmapParameters()
         self.levels: list[Level] = []
+        self.passages = PassageFinder(cspace)
         self._axis = self.parameters.checked_axis(cspace.dimension)
         self._axes = cspace.dimension if self.parameters.axis is None else 1
         self._weight = self._metric_weight()
@@ -92,10 +94,13 @@ class HighwayRoadmap:
             if should_stop():
                 return Outcome(TIMEOUT)
         best: Array | None = None
+        self.passages.begin(begin, end)
         for index in range((self.parameters.refine + 1) * self._axes):
             level = self._level(index, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
-            status, path = level.solve(begin, end, inflation, self._weight, should_stop)
+            status, path = level.solve(
+                begin, end, inflation, self._weight, should_stop, self.passages
+            )
             if status == roadmap_tables.SOLVED:
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)
@@ -115,13 +120,20 @@ class HighwayRoadmap:
     def clear(self) -> None:
         """Forget everything computed so far."""
         self.levels = []
+        self.passages = PassageFinder(self.cspace)
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
 
     @property
     def statistics(self) -> dict[str, int]:
         """Counts over all levels since the last :meth:`clear`."""
-        total = {"levels": len(self.levels), "direct_motions": self._direct}
+        total = {
+            "levels": len(self.levels),
+            "direct_motions": self._direct,
+            "passages": len(self.passages.found),
+            "seeds": self.passages.seeds_tried,
+            "closed_seeds": self.passages.seeds_closed,
+        }
         for level in self.levels:
             for name, count in level.statistics.items():
                 total[name] = total.get(name, 0) + count
@@ -198,7 +210,9 @@ class HighwayRoadmap:
         for inflation in _LOWER_INFLATIONS:
             if should_stop():
                 return best
-            status, path = level.solve(starts, goals, inflation, self._weight, should_stop)
+            status, path = level.solve(
+                starts, goals, inflation, self._weight, should_stop, self.passages
+            )
             if status == roadmap_tables.SOLVED:
                 best = self._better(best, self._shortened(path), on_path)
         while not should_stop():

@@ -11,14 +11,21 @@ from numpy.typing import NDArray
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap, roadmap_path, roadmap_tables
 from ellipsoid_planning.roadmap.grid import Grid
-from ellipsoid_planning.roadmap.tables import grown, new_tables, warm_up_growth, with_grid
+from ellipsoid_planning.roadmap.passages import PassageFinder
+from ellipsoid_planning.roadmap.tables import (
+    grown,
+    new_tables,
+    warm_up_growth,
+    with_grid,
+    with_passage,
+)
 
 Array = NDArray[np.float64]
 
-# Steps of the search between two looks at the clock, at first and at most, and how long they
-# should take.
-_FIRST_BURST = 64
-_LONGEST_BURST = 1024
+# Steps of the search between two looks for passages, at first and at most.
+_FIRST_TURN = 64
+_LONGEST_TURN = 1024
+# How long a call of the kernel should take at most [s].
 _BURST_SECONDS = 3e-3
 
 
@@ -36,6 +43,8 @@ class Level:
         self.axis = axis
         self.tables = new_tables(grid, len(cspace.robot.parts))
         self._scene = cspace.scene
+        self._passages = 0
+        self._burst = _FIRST_TURN
 
     def solve(
         self,
@@ -44,6 +53,7 @@ class Level:
         inflation: float,
         metric_weight: float,
         should_stop: Callable[[], bool],
+        passages: PassageFinder,
     ) -> tuple[int, Array]:
         """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
 
@@ -51,30 +61,78 @@ class Level:
         are no poses unless SOLVED.
         """
         start_rows, goal_rows = self._rows(starts), self._rows(goals)
+        self._take_in(passages)
         self.tables = grown(with_grid(self.tables, self.grid), len(starts))
         status = roadmap.begin(
             self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
         )
-        steps = _FIRST_BURST
-        while status in (roadmap_tables.SEARCHING, roadmap_tables.GROW):
-            if status == roadmap_tables.GROW:
-                self.tables = grown(self.tables)
-            began = time.perf_counter()
-            status = roadmap.search(
-                self._scene, self.tables, goal_rows, self.axis, inflation, metric_weight, steps
-            )
-            if status == roadmap_tables.SEARCHING and should_stop():
+        turn = _FIRST_TURN
+        while True:
+            status = self._search(goal_rows, inflation, metric_weight, turn, should_stop)
+            if status == roadmap_tables.SOLVED or should_stop():
                 break
-            # A step may take a microsecond or, among thousands of bodies, a hundredth of a second.
-            late = time.perf_counter() - began > _BURST_SECONDS
-            steps = max(steps // 4, 1) if late else min(2 * steps, _LONGEST_BURST)
+            # Passages are looked for in turns with the search, by counts of work and not by the
+            # clock, so that the same query finds the same path.
+            more = passages.advance(turn, should_stop)
+            self._take_in(passages)
+            counters = self.tables.counters
+            new = counters[roadmap_tables.ENDS] > counters[roadmap_tables.OFFERED]
+            if status == roadmap_tables.EXHAUSTED and not (more or new):
+                break
+            turn = min(2 * turn, _LONGEST_TURN)
         if status != roadmap_tables.SOLVED:
             return status, np.empty((0, 7))
         return self._path(goal_rows)
 
-    def _rows(self, ends: Array) -> Array:
+    def _search(
+        self,
+        goal_rows: Array,
+        inflation: float,
+        metric_weight: float,
+        turn: int,
+        should_stop: Callable[[], bool],
+    ) -> int:
+        """``turn`` steps of the search, unless it ends or is told to stop before."""
+        status, counters = roadmap_tables.SEARCHING, self.tables.counters
+        end = counters[roadmap_tables.STEPS] + turn
+        while counters[roadmap_tables.STEPS] < end:
+            began = time.perf_counter()
+            status = roadmap.search(
+                self._scene,
+                self.tables,
+                goal_rows,
+                self.axis,
+                inflation,
+                metric_weight,
+                min(self._burst, end - counters[roadmap_tables.STEPS]),
+            )
+            if status == roadmap_tables.GROW:
+                self.tables = grown(self.tables)
+                continue
+            if status != roadmap_tables.SEARCHING or should_stop():
+                break
+            # A step may take a microsecond or, among thousands of bodies, a hundredth of a second.
+            late = time.perf_counter() - began > _BURST_SECONDS
+            self._burst = max(self._burst // 4, 1) if late else min(2 * self._burst, _LONGEST_TURN)
+        return status
+
+    def _take_in(self, passages: PassageFinder) -> None:
+        """Enter the passages that were found since the last call."""
+        for passage in passages.found[self._passages :]:
+            rows = self._rows(passage.poses[[0, -1]], joins=False)
+            self.tables = with_passage(
+                with_grid(self.tables, self.grid), rows, passage.length, passage.poses
+            )
+            self._passages += 1
+        self.tables = grown(self.tables)
+
+    def _rows(self, ends: Array, joins: bool = True) -> Array:
         rows = [
-            [self.grid.layer_of(pose[3:]), *pose[:3], self.grid.column_of(pose[:3], self.axis)]
+            [
+                self.grid.layer_of(pose[3:], joins),
+                *pose[:3],
+                self.grid.column_of(pose[:3], self.axis, joins),
+            ]
             for pose in ends
         ]
         return np.array(rows, dtype=float)

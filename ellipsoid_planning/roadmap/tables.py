@@ -15,6 +15,7 @@ from ellipsoid_planning.roadmap.grid import Grid
 
 _ROWS = 1 << 12
 _WHITENED = 1 << 14
+_ENDS = 64
 
 
 def _map(size: int) -> NDArray[np.int64]:
@@ -31,6 +32,8 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         layer_neighbours=grid.layer_neighbours,
         columns=grid.columns,
         column_neighbours=grid.column_neighbours,
+        passing_layers=grid.passing_layers,
+        passing_columns=grid.passing_columns,
         placed=np.empty((len(grid.orientations), parts, layout.PLACED)),
         ready=np.zeros(len(grid.orientations), dtype=np.bool_),
         whitening=np.empty((_WHITENED, whitening.WHITEN)),
@@ -45,6 +48,9 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         heap_items=np.empty(4 * _ROWS, dtype=np.int64),
         entry_reals=np.empty((4 * _ROWS, 2)),
         entry_integers=np.empty((4 * _ROWS, 3), dtype=np.int64),
+        end_reals=np.empty((_ENDS, roadmap_tables.END_REALS)),
+        end_integers=np.zeros((_ENDS, roadmap_tables.END_INTEGERS), dtype=np.int64),
+        passage_poses=np.empty((_ROWS, 7)),
         counters=counters,
         motion=workspace,
         motion_placed=placed,
@@ -86,6 +92,7 @@ def grown(tables: Roadmap, starts: int = 0) -> Roadmap:
     )
     branches = tables.column_neighbours.shape[1] + tables.layer_neighbours.shape[1]
     entries = max(int(used[roadmap_tables.ENTRIES]), starts) + branches
+    entries += 64 * int(used[roadmap_tables.ENDS])
     return tables._replace(
         lines=_larger_map(tables.lines, int(used[roadmap_tables.LINES]) + starts),
         edges=_larger_map(tables.edges, edges),
@@ -97,6 +104,32 @@ def grown(tables: Roadmap, starts: int = 0) -> Roadmap:
         entry_reals=_longer(tables.entry_reals, entries),
         entry_integers=_longer(tables.entry_integers, entries),
     )
+
+
+def with_passage(
+    tables: Roadmap, rows: NDArray[np.float64], length: float, poses: NDArray[np.float64]
+) -> Roadmap:
+    """``tables`` with one more passage along ``poses`` (m, 7).
+
+    ``rows`` (2, 5) tell layer, x, y, z and column of its first and its last pose.
+    """
+    counters = tables.counters
+    end = int(counters[roadmap_tables.ENDS])
+    used = int(tables.end_reals[end - 1, roadmap_tables.END_FIRST]) + 1 if end else 0
+    tables = tables._replace(
+        end_reals=_longer(tables.end_reals, end + 2),
+        end_integers=_longer(tables.end_integers, end + 2),
+        passage_poses=_longer(tables.passage_poses, used + len(poses)),
+    )
+    tables.passage_poses[used : used + len(poses)] = poses
+    first, last = used, used + len(poses) - 1
+    tables.end_reals[end : end + 2, :5] = rows
+    tables.end_reals[end : end + 2, roadmap_tables.END_LENGTH] = length
+    tables.end_reals[end : end + 2, roadmap_tables.END_FIRST] = first, last
+    tables.end_reals[end : end + 2, roadmap_tables.END_LAST] = last, first
+    tables.end_integers[end : end + 2] = 0
+    counters[roadmap_tables.ENDS] += 2
+    return tables
 
 
 def warm_up_growth() -> None:
@@ -115,6 +148,8 @@ def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:
         layer_neighbours=grid.layer_neighbours,
         columns=grid.columns,
         column_neighbours=grid.column_neighbours,
+        passing_layers=grid.passing_layers,
+        passing_columns=grid.passing_columns,
         placed=np.concatenate([tables.placed, more]) if new else tables.placed,
         ready=np.concatenate([tables.ready, np.zeros(new, dtype=np.bool_)])
         if new

@@ -1,0 +1,114 @@
+"""Fitting orientations: those at which a robot is narrowest along a direction.
+
+The width of a robot along u is h(u) + h(−u), h being the support function of the union of its
+parts: the least distance of two parallel walls of normal ±u that the robot fits between. As a
+function of the direction in the robot's own frame it depends on nothing but the robot; its local
+minimisers v give the fitting orientations R for a gap of normal u by R v = ±u.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.robots.rigid import RigidRobot
+
+Array = NDArray[np.float64]
+
+_HEADINGS = 720
+_BISECTIONS = 60
+_DIRECTIONS = 200
+_SMALLEST_STEP = 1e-9
+_ROUNDS = 200
+# Local minimisers nearer to each other than this are one [rad].
+_SAME = 1e-4
+
+
+def width(robot: RigidRobot, directions: ArrayLike) -> Array:
+    """Widths (m,) of the robot along unit ``directions`` (m, n) of its base frame."""
+    u = np.atleast_2d(np.asarray(directions, dtype=float))
+    supports = np.array([[part.support(u), part.support(-u)] for part in robot.parts])
+    return np.asarray(supports.max(axis=0).sum(axis=0))
+
+
+def narrowest_directions(robot: RigidRobot) -> Array:
+    """Directions (m, n) in the base frame of the local minima of the robot's width.
+
+    One of each pair ±v, the narrowest first. In 2-D they are all of them, to rounding; in 3-D
+    those that a descent from 200 directions and the parts' axes finds.
+    """
+    found = _planar(robot) if robot.dimension == 2 else _spatial(robot)
+    return found[np.argsort(width(robot, found), kind="stable")]
+
+
+def _slope(robot: RigidRobot, angles: Array) -> Array:
+    """Derivative of the planar width by the direction's angle, one-sided at kinks."""
+    u = np.column_stack([np.cos(angles), np.sin(angles)])
+    tangent = np.column_stack([-np.sin(angles), np.cos(angles)])
+    slopes = np.zeros(len(angles))
+    for sign in (1.0, -1.0):
+        supports = np.array([part.support(sign * u) for part in robot.parts])
+        points = np.array([part.support_points(sign * u) for part in robot.parts])
+        farthest = points[np.argmax(supports, axis=0), np.arange(len(u))]
+        slopes += np.sum(farthest * sign * tangent, axis=1)
+    return slopes
+
+
+def _planar(robot: RigidRobot) -> Array:
+    angles = np.linspace(0.0, math.pi, _HEADINGS + 1)
+    slopes = _slope(robot, angles)
+    rising = np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0))
+    if len(rising) == 0:
+        # A disc: every direction is as good as any other.
+        return np.array([[1.0, 0.0]])
+    low, high = angles[rising], angles[rising + 1]
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        falls = _slope(robot, middle) < 0.0
+        low, high = np.where(falls, middle, low), np.where(falls, high, middle)
+    return np.column_stack([np.cos(low), np.sin(low)])
+
+
+def _spread(count: int) -> Array:
+    """Directions (count, 3) spread evenly over half the sphere (Fibonacci)."""
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - k / count, math.pi * (3.0 - math.sqrt(5.0)) * k
+    across = np.sqrt(1.0 - z * z)
+    return np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
+
+
+def _spatial(robot: RigidRobot) -> Array:
+    axes = np.vstack([part.rotation.T for part in robot.parts])
+    v = np.vstack([axes, _spread(_DIRECTIONS)])
+    values, step = width(robot, v), np.full(len(v), 0.2)
+    turns = np.linspace(0.0, 2.0 * math.pi, 8, endpoint=False)
+    for _ in range(_ROUNDS):
+        if step.max() < _SMALLEST_STEP:
+            break
+        first = np.cross(v, np.eye(3)[np.argmin(np.abs(v), axis=1)])
+        first /= np.linalg.norm(first, axis=1, keepdims=True)
+        second = np.cross(v, first)
+        trials = (
+            v[:, None]
+            + step[:, None, None] * np.cos(turns)[:, None] * first[:, None]
+            + step[:, None, None] * np.sin(turns)[:, None] * second[:, None]
+        )
+        trials /= np.linalg.norm(trials, axis=2, keepdims=True)
+        widths = width(robot, trials.reshape(-1, 3)).reshape(len(v), -1)
+        best = np.argmin(widths, axis=1)
+        rows = np.arange(len(v))
+        better = widths[rows, best] < values
+        v = np.where(better[:, None], trials[rows, best], v)
+        values = np.where(better, widths[rows, best], values)
+        step = np.where(better, step, 0.5 * step)
+    return _distinct(v[np.argsort(values, kind="stable")])
+
+
+def _distinct(directions: Array) -> Array:
+    kept: list[Array] = []
+    for v in directions:
+        if all(1.0 - abs(float(v @ w)) > 0.5 * _SAME**2 for w in kept):
+            kept.append(v)
+    return np.array(kept)

@@ -1,0 +1,154 @@
+"""Centring: moving a robot to where its smallest gap is largest, in all of its C-space.
+
+Each step maximises the smallest gap of the linear model (contact_model) less a proximal term
+|step|²/(2 s). The dual is a small quadratic programme over the simplex,
+
+    minimise over λ ≥ 0, Σλ = 1:  Σ λ_k g_k + s/2 |Σ λ_k ∇g_k|²,    step = s Σ λ_k ∇g_k,
+
+solved pair by pair of weights. Sharp directions (translations between bodies) converge at once,
+curved ones (turning to fit) like gradient ascent whose step s follows the success. With a
+direction given, steps stay across it: that finds the saddle points of clearance, and follows
+passages.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .compile import inlined, kernel
+from .contact_model import (
+    ALONG,
+    CAPACITY,
+    GAP,
+    GRADIENT,
+    MODEL,
+    contact_model,
+    moved,
+    smallest_gap,
+)
+from .layout import HIGH, LOW, PART_REACH, new_placed, part_rows
+from .simplex import MOST_ACTIVE, minimise
+
+
+
+class Workspace(NamedTuple):
+    """Arrays that centring works in; ``pairs`` (1,) counts the pairs of bodies looked at."""
+
+    placed: NDArray[np.float64]
+    first: NDArray[np.float64]
+    second: NDArray[np.float64]
+    matrix: NDArray[np.float64]
+    active: NDArray[np.int64]
+    weights: NDArray[np.float64]
+    step: NDArray[np.float64]
+    trial: NDArray[np.float64]
+    ahead: NDArray[np.float64]
+    next_pose: NDArray[np.float64]
+    pairs: NDArray[np.int64]
+
+
+@kernel
+def new_workspace(scene):
+    """A workspace for the robot of ``scene``."""
+    return Workspace(
+        new_placed(scene),
+        np.empty((CAPACITY, MODEL)),
+        np.empty((CAPACITY, MODEL)),
+        np.empty((MOST_ACTIVE, MOST_ACTIVE + 2)),
+        np.empty(MOST_ACTIVE + 1, dtype=np.int64),
+        np.empty(MOST_ACTIVE),
+        np.empty(6),
+        np.empty(7),
+        np.empty(6),
+        np.empty(7),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+@kernel
+def robot_reach(scene):
+    """Largest distance of a point of the robot from its base."""
+    parts = part_rows(scene)
+    reach = 0.0
+    for i in range(parts.shape[0]):
+        reach = max(reach, parts[i, PART_REACH])
+    return reach
+
+
+@inlined
+def _put_across(model, count, across):
+    """Split the gradients of a model: along the direction ``across`` (column ALONG), and the rest."""
+    for k in range(count):
+        along = 0.0
+        for m in range(6):
+            along += model[k, GRADIENT + m] * across[m]
+        for m in range(6):
+            model[k, GRADIENT + m] -= along * across[m]
+        model[k, ALONG] = along
+
+
+@inlined
+def _shortened(step, longest):
+    """Shorten ``step`` to ``longest``; returns whether that was needed."""
+    square = 0.0
+    for m in range(6):
+        square += step[m] * step[m]
+    if square <= longest * longest:
+        return False
+    scale = longest / math.sqrt(square)
+    for m in range(6):
+        step[m] *= scale
+    return True
+
+
+@kernel
+def centre(scene, pose, across, turns, within, enough, steps, work):
+    """Move ``pose`` (7,) to where its smallest gap is largest: (gap, slope).
+
+    Stops once the gap is ``enough``, or after ``steps`` models. ``across`` (6,) is a unit direction
+    to which steps stay orthogonal, or zero; ``turns`` whether the robot may turn. Returns the gap,
+    an estimate of what can be proved, and how it changes along ``across``.
+    """
+    reach = robot_reach(scene)
+    inverse_reach = 1.0 / reach if turns else 0.0
+    placed, trial, step = work.placed, work.trial, work.step
+    here, there = work.first, work.second
+    count = contact_model(scene, placed, pose, within, inverse_reach, here, work.pairs)
+    _put_across(here, count, across)
+    gap = smallest_gap(here, count, within)
+    size, longest, slope = reach, 0.5 * reach, 0.0
+    for _ in range(steps):
+        if gap >= enough or count == 0:
+            break
+        promised = minimise(here, count, size, work.matrix, work.active, work.weights, step)
+        slope = 0.0
+        for k in range(work.active[MOST_ACTIVE]):
+            slope += work.weights[k] * here[work.active[k], ALONG]
+        if _shortened(step, longest):
+            promised = gap + 0.1 * abs(promised - gap)
+        if promised - gap <= 1e-3 * abs(gap) + 1e-14 * reach:
+            break
+        moved(pose, step, inverse_reach, trial)
+        for k in range(3):
+            trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
+        more = contact_model(scene, placed, trial, within, inverse_reach, there, work.pairs)
+        value = smallest_gap(there, more, within)
+        good = value > gap + 0.1 * (promised - gap)
+        if good and value > gap + 0.5 * (promised - gap):
+            size = min(3.0 * size, 100.0 * reach)
+            longest = min(2.0 * longest, 0.5 * reach)
+        elif not good:
+            size *= 0.2
+            length = 0.0
+            for m in range(6):
+                length += step[m] * step[m]
+            longest = min(longest, math.sqrt(length))
+        if value > gap:
+            for k in range(7):
+                pose[k] = trial[k]
+            here, there = there, here
+            count, gap = more, value
+            _put_across(here, count, across)
+    return gap, slope

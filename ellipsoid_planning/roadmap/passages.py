@@ -1,0 +1,152 @@
+"""Narrow passages: found at saddle points of clearance and followed both ways.
+
+The work is cut into short pieces, so that it can take turns with the search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.kernels import centring, motion, passages
+from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.roadmap.seeds import Seed, seeds_of_query
+
+Array = NDArray[np.float64]
+
+# In units of the robot's reach: how far around the robot bodies are looked for, at which gap a
+# passage has opened, and how long it may be.
+_WITHIN = 0.5
+_WIDE = 0.25
+_LONGEST = 16.0
+# Poses that one call of the kernel adds at most, so that it takes a few milliseconds at most.
+_POSES = 16
+# Passages whose ends are this near to each other, in units of the reach, count as one.
+_SAME = 0.05
+# Pairs of bodies that are looked at while the search takes a step, about.
+_PAIRS_PER_STEP = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """Poses (m, 7) joined by proved motions, ``length`` long in the roadmap's metric."""
+
+    poses: Array
+    length: float
+
+    def __post_init__(self) -> None:
+        self.poses.setflags(write=False)
+
+
+class PassageFinder:
+    """Finds the passages of a C-space, those that a query is likely to need first.
+
+    Attributes:
+        cspace: where to look.
+        found: the passages found so far.
+        seeds_tried, seeds_closed: how many places were looked at, and found to leave no room.
+    """
+
+    def __init__(self, cspace: CSpace) -> None:
+        """Nothing is computed yet."""
+        self.cspace = cspace
+        self.found: list[Passage] = []
+        self.seeds_tried = 0
+        self.seeds_closed = 0
+        self._work: Iterator[None] = iter(())
+        self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
+        self._reach = float(centring.robot_reach(cspace.scene))
+
+    def begin(self, starts: Array, goals: Array) -> None:
+        """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
+        self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
+
+    def advance(self, steps: int, should_stop: Callable[[], bool]) -> bool:
+        """Do about as much work as ``steps`` steps of the search, or until a passage is found.
+
+        Returns whether there is anything left to do.
+        """
+        known, end = len(self.found), self._pairs() + _PAIRS_PER_STEP * steps
+        for _ in self._work:
+            if len(self.found) > known or self._pairs() > end or should_stop():
+                return True
+        return False
+
+    def _pairs(self) -> int:
+        return int(self._kernel[0].pairs[0])
+
+    def _explore(self, seeds: Iterator[Seed | None]) -> Iterator[None]:
+        for seed in seeds:
+            if seed is None:
+                yield
+            else:
+                self.seeds_tried += 1
+                yield from self._explore_seed(seed)
+
+    def _explore_seed(self, seed: Seed) -> Iterator[None]:
+        middle = seed.pose.reshape(1, 7).copy()
+        if seed.centred:
+            state = np.zeros(passages.PROGRESS)
+            self._follow(state, seed.across.copy(), middle, 1, 1)
+            yield
+            if state[passages.STATE] != passages.FOLLOWING:
+                self.seeds_closed += state[passages.STATE] == passages.CLOSED
+                return
+            if self._known(middle[0]):
+                return
+        halves = []
+        for sign in (1.0, -1.0) if seed.centred else (1.0,):
+            state = np.zeros(passages.PROGRESS)
+            state[[passages.STATE, passages.SIZE]] = passages.FOLLOWING, self._reach
+            direction = sign * seed.across / np.linalg.norm(seed.across)
+            path, count = np.empty((_POSES, 7)), 1
+            path[0] = middle[0]
+            while state[passages.STATE] == passages.FOLLOWING:
+                if count == len(path):
+                    path = np.concatenate([path, np.empty_like(path)])
+                limit = min(count + _POSES, len(path))
+                count = self._follow(state, direction, path, count, limit)
+                yield
+            halves.append(path[:count])
+        poses = np.vstack([halves[-1][::-1], halves[0][1:]]) if seed.centred else halves[0]
+        if len(poses) > 1:
+            self.found.append(Passage(poses, self._length(poses)))
+            yield
+
+    def _follow(
+        self, state: Array, direction: Array, path: Array, count: int, limit: int
+    ) -> int:
+        reach = self._reach
+        return int(
+            passages.follow(
+                self.cspace.scene,
+                state,
+                direction,
+                self.cspace.rotates,
+                _WITHIN * reach,
+                _WIDE * reach,
+                _LONGEST * reach,
+                path,
+                count,
+                limit,
+                *self._kernel,
+            )
+        )
+
+    def _known(self, pose: Array) -> bool:
+        """Whether a passage found so far leads through ``pose`` (7,), about."""
+        for passage in self.found:
+            away = np.linalg.norm(passage.poses[:, :3] - pose[:3], axis=1)
+            turned = np.arccos(np.minimum(np.abs(passage.poses[:, 3:] @ pose[3:]), 1.0))
+            if np.min(away + 2.0 * self._reach * turned) < _SAME * self._reach:
+                return True
+        return False
+
+    def _length(self, poses: Array) -> float:
+        robot = self.cspace.robot
+        return path_length(robot, configurations_from_poses(robot, poses))

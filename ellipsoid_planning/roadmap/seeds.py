@@ -1,0 +1,147 @@
+"""Where a query may have to squeeze through: poses to centre, and directions to follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.kernels import centring, contact_model, layout, linear, validity
+from ellipsoid_planning.roadmap.gates import Gate, GateFinder, probe
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 15
+# Obstacles among which the gates of one query are looked for.
+_BODIES = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Seed:
+    """A pose (7,) near a passage and a step (6,) along it (see kernels.contact_model).
+
+    ``centred`` tells whether the pose is to be moved across the passage first, and the passage
+    followed both ways.
+    """
+
+    pose: Array
+    across: Array
+    centred: bool = True
+
+
+def seeds_of_query(
+    cspace: CSpace, starts: Array, goals: Array, workspace: centring.Workspace
+) -> Iterator[Seed | None]:
+    """Seeds for queries from ``starts`` (S, 7) to ``goals`` (G, 7), the likeliest first.
+
+    Now and then None, when looking for the next one took a while.
+    """
+    for first in starts:
+        for last in goals:
+            yield from _on_the_way(cspace, first, last)
+    for first in starts:
+        for last in goals:
+            yield from _at_gates(cspace, first, last, workspace)
+
+
+def _on_the_way(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
+    """The middles of the blocked stretches of the direct motion, then its ends."""
+    step = np.empty(6)
+    contact_model.difference(first, last, centring.robot_reach(cspace.scene), step)
+    if not cspace.rotates:
+        step[3:] = 0.0
+    if not step.any():
+        return
+    poses = np.empty((_SAMPLES, 7))
+    for k, s in enumerate(np.linspace(0.0, 1.0, _SAMPLES + 2)[1:-1]):
+        contact_model.moved(first, s * step, 1.0 / centring.robot_reach(cspace.scene), poses[k])
+    free = np.empty(_SAMPLES, dtype=np.bool_)
+    validity.are_free(cspace.scene, poses, free)
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], free, [True]]).astype(int)))
+    for begin, end in edges.reshape(-1, 2):
+        yield Seed(poses[(begin + end - 1) // 2], step)
+    yield Seed(first, step, centred=False)
+    yield Seed(last, -step, centred=False)
+
+
+def _at_gates(
+    cspace: CSpace, first: Array, last: Array, workspace: centring.Workspace
+) -> Iterator[Seed | None]:
+    """Gates by the length of the way through them, each at one orientation after the other."""
+    reach = centring.robot_reach(cspace.scene)
+    finder = GateFinder(cspace, *probe(cspace), reach, workspace)
+    found: list[tuple[float, int, Gate]] = []
+    for gate in finder.gates(_bodies_near(cspace, first[:3], last[:3])):
+        yield None
+        if gate is not None and cspace_has_room(cspace, gate):
+            way = np.linalg.norm(gate.point - first[:3]) + np.linalg.norm(last[:3] - gate.point)
+            found.append((float(way), len(found), gate))
+    found.sort()
+    rounds = [_gate_seeds(cspace, gate, first, last) for _, _, gate in found]
+    while rounds:
+        left = []
+        for seeds in rounds:
+            seed = next(seeds, None)
+            if seed is not None:
+                left.append(seeds)
+                yield seed
+        rounds = left
+
+
+def _bodies_near(cspace: CSpace, first: Array, last: Array) -> list[int]:
+    """The obstacles nearest to the way from first to last, at most _BODIES of them."""
+    rows = layout.obstacle_rows(cspace.scene)
+    centres = rows[:, :3]
+    step = last - first
+    square = float(step @ step)
+    s = np.clip((centres - first) @ step / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(rows))
+    away = np.linalg.norm(centres - first - s[:, None] * step, axis=1) - rows[:, layout.BODY_RADIUS]
+    return [int(j) for j in np.argsort(away, kind="stable")[:_BODIES]]
+
+
+def cspace_has_room(cspace: CSpace, gate: Gate) -> bool:
+    """Whether the point of a gate lies in bounds, in every arena and outside every obstacle."""
+    n = cspace.dimension
+    point = gate.point[:n]
+    if cspace.rotates:
+        inside = all(arena.contains(point) for arena in cspace.world.arenas)
+        return inside and not any(body.contains(point) for body in cspace.world.obstacles)
+    return True
+
+
+def _along(gate: Gate, first: Array, last: Array, dimension: int) -> Array:
+    """Unit vector (3,) through a gate."""
+    if len(gate.normals) == 3:
+        products = [np.cross(gate.normals[a], gate.normals[b]) for a, b in ((0, 1), (1, 2), (2, 0))]
+        along = max(products, key=np.linalg.norm)
+    elif dimension == 2:
+        along = np.array([-gate.normals[0, 1], gate.normals[0, 0], 0.0])
+    else:
+        u, step = gate.normals[0], last[:3] - first[:3]
+        along = step - (step @ u) * u
+    return along / max(float(np.linalg.norm(along)), 1e-300)
+
+
+def _gate_seeds(cspace: CSpace, gate: Gate, first: Array, last: Array) -> Iterator[Seed]:
+    across = np.zeros(6)
+    across[:3] = _along(gate, first, last, cspace.dimension)
+    if not across.any():
+        return
+    if not cspace.rotates:
+        yield Seed(np.concatenate([gate.point, first[3:]]), across)
+        return
+    for quaternion in (first[3:], last[3:]):
+        rotation = np.array(linear.rotation_matrix(*quaternion)).reshape(3, 3)
+        base = gate.point - rotation @ _middle(cspace)
+        yield Seed(np.concatenate([base, quaternion]), across)
+
+
+def _middle(cspace: CSpace) -> Array:
+    """The middle of the robot's box in its base frame (3,)."""
+    parts = layout.part_rows(cspace.scene)
+    extent = np.linalg.norm(parts[:, 3:12].reshape(-1, 3, 3), axis=2)
+    low, high = (parts[:, :3] - extent).min(axis=0), (parts[:, :3] + extent).max(axis=0)
+    return np.asarray(0.5 * (low + high))

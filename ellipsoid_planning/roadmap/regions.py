@@ -24,28 +24,46 @@ _REACHES = 2.0
 _SPANS = 0.5
 # Corners stand on a lattice of so many steps to the margin.
 _STEPS = 4
+# Each box has a margin this many times that of the one before.
+_GROWTH = 4.0
 # A box of a larger share of the bounds than this is not worth it: the whole is taken.
 _LARGEST_SHARE = 0.25
 
 
-def query_box(cspace: CSpace, ends: Array, doublings: int) -> Box | None:
-    """Corners (n,), (n,) of a box around the positions of ``ends`` (m, 7); None for everything.
+def query_boxes(cspace: CSpace, ends: Array) -> list[Box | None]:
+    """Boxes around the positions of ``ends`` (m, 7), each larger than the one before.
 
-    Each of ``doublings`` doubles the margin, until the box is not worth it. Margins are powers of
-    √2 of the robot's reach and corners stand on a lattice, so that queries from about here to
-    about there share a box, and its roadmap.
+    The last one is None: everything. A box is its two corners (n,). Margins are powers of √2 of
+    the robot's reach and corners stand on a lattice, so that queries from about here to about
+    there share boxes, and their roadmaps.
     """
-    n, world = cspace.dimension, cspace.world
+    n = cspace.dimension
     low, high = ends[:, :n].min(axis=0), ends[:, :n].max(axis=0)
     reach = float(layout.part_rows(cspace.scene)[:, layout.PART_REACH].max())
     least = max(_REACHES, _SPANS * float(np.max(high - low)) / reach)
-    margin = reach * 2.0 ** (0.5 * math.ceil(2.0 * math.log2(least)) + doublings)
-    step = margin / _STEPS
-    low = np.maximum(world.low, (np.floor(low / step) - _STEPS) * step)
-    high = np.minimum(world.high, (np.ceil(high / step) + _STEPS) * step)
-    if np.prod((high - low) / (world.high - world.low)) > _LARGEST_SHARE:
+    margin = reach * 2.0 ** (0.5 * math.ceil(2.0 * math.log2(least)))
+    boxes: list[Box | None] = []
+    while (box := _box(cspace, low, high, margin)) is not None:
+        boxes.append(box)
+        margin *= _GROWTH
+    return [*boxes, None]
+
+
+def _box(cspace: CSpace, low: Array, high: Array, margin: float) -> Box | None:
+    """The box from ``low`` to ``high`` (n,) with a margin; None if it is not worth it."""
+    world, step = cspace.world, margin / _STEPS
+    first = np.maximum(world.low, (np.floor(low / step) - _STEPS) * step)
+    last = np.minimum(world.high, (np.ceil(high / step) + _STEPS) * step)
+    if np.prod((last - first) / (world.high - world.low)) > _LARGEST_SHARE:
         return None
-    return low, high
+    return first, last
+
+
+def is_same(first: Box | None, second: Box | None) -> bool:
+    """Whether two boxes are one."""
+    if first is None or second is None:
+        return first is second
+    return np.array_equal(first, second)
 
 
 def within(cspace: CSpace, box: Box | None) -> CSpace:

@@ -15,6 +15,7 @@ from planners.benchmark.run import CRASHED, RunRecord, RunTask
 
 def main() -> None:
     """Run the task in the folder that is the one argument; leave a record there."""
+    _die_with_parent()
     os.chdir(sys.argv[1])
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # who watches decides
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
@@ -26,6 +27,15 @@ def main() -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)  # the record is there; how OMPL's globals are taken apart is of no interest
+
+
+def _die_with_parent() -> None:
+    """Let the kernel end this process when the one that watches it is killed; Linux can do it."""
+    if sys.platform == "linux":
+        import ctypes
+
+        set_parent_death_signal = 1
+        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 def _record(task: RunTask) -> RunRecord:

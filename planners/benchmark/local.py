@@ -13,8 +13,8 @@ _LOOK_EVERY = 0.1  # [s]
 
 
 def run_locally(
-    tasks: Sequence[RunTask],
     jobs: int,
+    tasks: Sequence[RunTask],
     interrupted: threading.Event,
     begins: Callable[[RunTask], None],
 ) -> Iterator[RunRecord]:

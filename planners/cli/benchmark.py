@@ -68,6 +68,14 @@ def benchmark(
     jobs: Annotated[
         int, typer.Option(metavar="N", help="Runs at a time; more than one disturb each other.")
     ] = 1,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS|local",
+            help="Run on a Dask cluster, one run at a time in each worker. "
+            "[dim]Needs the extra \\[cluster].[/dim]",
+        ),
+    ] = None,
 ) -> None:
     """Compare planners: success, time, path length and clearance, with figures.
 
@@ -86,7 +94,7 @@ def benchmark(
     from planners.benchmark.contenders import line_up
     from planners.benchmark.store import Store
     from planners.cli.benchmark_report import report
-    from planners.cli.benchmark_runs import run_campaign
+    from planners.cli.benchmark_runs import executor, run_campaign
 
     check_numbers(runs, time_limit, memory_limit, seed, jobs)
     line = line_up(_names(planners), _names(checkers))
@@ -98,9 +106,10 @@ def benchmark(
     store.check(campaign)
     for note in line.notes:
         say(f"Note: {note}")
-    interrupted = _note_interrupts()
-    store.open(campaign)
-    records = run_campaign(campaign, store, jobs, interrupted)
+    with executor(cluster, jobs) as execute:
+        interrupted = _note_interrupts()
+        store.open(campaign)
+        records = run_campaign(campaign, store, execute, interrupted)
     if records:
         with working("Writing database, tables and figures"):
             report(output, campaign, records)

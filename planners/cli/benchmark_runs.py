@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
+from ellipsoid_planning.errors import PlannerError
 from planners.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -26,12 +28,38 @@ class _Progress(Protocol):
         """A run has ended."""
 
 
+Execute = Callable[
+    ["Sequence[RunTask]", threading.Event, "Callable[[RunTask], None]"], "Iterator[RunRecord]"
+]
+"""Runs tasks until it is interrupted, says which one begins, and gives records as they come."""
+
+
+@contextmanager
+def executor(cluster: str | None, jobs: int) -> Iterator[Execute]:
+    """What runs tasks: ``jobs`` processes on this machine, or a Dask cluster at an address.
+
+    Raises:
+        EllipsoidPlanningError: the cluster cannot be reached.
+    """
+    if cluster is None:
+        from planners.benchmark.local import run_locally
+
+        yield partial(run_locally, jobs)
+        return
+    from planners.benchmark.cluster import LOCAL, cluster_client, run_on_cluster
+
+    if cluster != LOCAL and jobs != 1:
+        raise PlannerError(
+            "--jobs is for this machine; each worker of a cluster runs one at a time"
+        )
+    with cluster_client(cluster, jobs) as client:
+        yield partial(run_on_cluster, client)
+
+
 def run_campaign(
-    campaign: Campaign, store: Store, jobs: int, interrupted: threading.Event
+    campaign: Campaign, store: Store, execute: Execute, interrupted: threading.Event
 ) -> list[RunRecord]:
     """Run what the store does not hold yet, keep every run at once, and return all there is."""
-    from planners.benchmark.local import run_locally
-
     tasks = list(campaign.tasks())
     records = {task.key: store.finished(task) for task in tasks}
     missing = [task for task in tasks if records[task.key] is None]
@@ -39,7 +67,7 @@ def run_campaign(
         say(f"Going on: {len(tasks) - len(missing)} of {len(tasks)} runs are there already.")
     if missing:
         with _progress(len(tasks), len(tasks) - len(missing), campaign.runs) as progress:
-            for record in run_locally(missing, jobs, interrupted, progress.begins):
+            for record in execute(missing, interrupted, progress.begins):
                 store.keep(record)
                 records[record.key] = record
                 progress.ends(record)

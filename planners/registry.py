@@ -188,6 +188,7 @@ _FMT = {
 
 _ENTRIES: tuple[PlannerEntry, ...] = (
     OwnPlanner("HighwayRoadmap", "planners.highway"),
+    OwnPlanner("FreeIntervalRRTConnect", "planners.free_interval_rrt_connect"),
     BoundPlanner("AORRTC", _RANGE),
     BoundPlanner("BFMT", _FMT),
     BoundPlanner("BITstar", _BIT_STAR),

@@ -79,7 +79,7 @@ def test_unknown_planner_is_refused_with_a_suggestion(name, suggestion):
 
 
 def test_unknown_planner_without_a_close_name_lists_all():
-    with pytest.raises(PlannerError, match="known: HighwayRoadmap, AORRTC"):
+    with pytest.raises(PlannerError, match="known: HighwayRoadmap, FreeIntervalRRTConnect, AORRTC"):
         find_planner("zzzzzz")
 
 

@@ -90,7 +90,7 @@ def part_rows(scene):
 
 @kernel
 def tree_rows(scene):
-    """Rows of the obstacles' bounding-volume tree, shape (2 m - 1 or 0, NODE), as a view."""
+    """Rows of the obstacles' bounding-volume tree, shape (nodes, NODE), as a view."""
     bodies = int(scene[OBSTACLE_COUNT] + scene[ARENA_COUNT])
     first = HEADER + bodies * BODY + int(scene[PART_COUNT]) * PART
     count = (scene.size - first) // NODE

@@ -31,6 +31,8 @@ from .contact_model import (
 from .layout import HIGH, LOW, PART_REACH, new_placed, part_rows
 from .simplex import MOST_ACTIVE, minimise
 
+# Largest proximal parameter s, in units of the robot's reach.
+_LONGEST_STEPS = 100.0
 
 
 class Workspace(NamedTuple):
@@ -129,7 +131,11 @@ def centre(scene, pose, across, turns, within, enough, steps, work):
         if _shortened(step, longest):
             promised = gap + 0.1 * abs(promised - gap)
         if promised - gap <= 1e-3 * abs(gap) + 1e-14 * reach:
-            break
+            if size >= _LONGEST_STEPS * reach:
+                break
+            # What is left to gain may lie in a direction of little curvature.
+            size *= 10.0
+            continue
         moved(pose, step, inverse_reach, trial)
         for k in range(3):
             trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
@@ -137,7 +143,7 @@ def centre(scene, pose, across, turns, within, enough, steps, work):
         value = smallest_gap(there, more, within)
         good = value > gap + 0.1 * (promised - gap)
         if good and value > gap + 0.5 * (promised - gap):
-            size = min(3.0 * size, 100.0 * reach)
+            size = min(3.0 * size, _LONGEST_STEPS * reach)
             longest = min(2.0 * longest, 0.5 * reach)
         elif not good:
             size *= 0.2

@@ -37,6 +37,10 @@ ALONG = 7
 MODEL = 8
 # Rows of a model; the widest gaps are left out if there are more pairs.
 CAPACITY = 32
+# Steps of the ascent to where a part is near a wall, and how near to each other, in units of its
+# size, two such places are one.
+_ASCENTS = 6
+_SAME = 1e-2
 
 
 @inlined
@@ -72,6 +76,78 @@ def _farthest(placed, i, ux, uy, uz):
     )
 
 
+@inlined
+def _enter_wall(
+    model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach
+):
+    """Add the row of the gap between the point p of the robot and the wall of arena ``a``."""
+    wx, wy, wz = times(
+        arenas,
+        a,
+        BODY_INVERSE,
+        px - arenas[a, BODY_CENTRE],
+        py - arenas[a, BODY_CENTRE + 1],
+        pz - arenas[a, BODY_CENTRE + 2],
+    )
+    root = norm(wx, wy, wz)
+    nx, ny, nz = transposed_times(arenas, a, BODY_INVERSE, wx, wy, wz)
+    steep = norm(nx, ny, nz)
+    if not steep > 0.0:
+        return count
+    # The wall lies at |w| = 1, and |w| grows by steep/|w| a unit of length.
+    gap = (1.0 - root) * root / steep - clearance
+    if gap < within:
+        ux, uy, uz = -nx / steep, -ny / steep, -nz / steep
+        px, py, pz = px - pose[0], py - pose[1], pz - pose[2]
+        count = _enter(model, count, gap, ux, uy, uz, px, py, pz, inverse_reach)
+    return count
+
+
+@kernel
+def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, inverse_reach):
+    """Add rows of part ``i`` and the wall of arena ``a``, which it can be near at several places.
+
+    They are local maxima of |w| over the part, looked for from the tips of its axes.
+    """
+    clearance = scene[CLEARANCE]
+    g, ux, uy, uz = extent_in_arena(arenas, a, placed, i, scene[SCALE], BODY_INVERSE, True)
+    length = norm(ux, uy, uz)
+    fx, fy, fz = placed[i, PLACED_CENTRE], placed[i, PLACED_CENTRE + 1], placed[i, PLACED_CENTRE + 2]
+    if length > 0.0:
+        fx, fy, fz = _farthest(placed, i, ux / length, uy / length, uz / length)
+    count = _enter_wall(
+        model, count, arenas, a, fx, fy, fz, pose, within, clearance, inverse_reach
+    )
+    for k in range(6):
+        sign, axis = 1.0 - 2.0 * (k % 2), k // 2
+        ax = placed[i, PLACED_MATRIX + axis]
+        ay = placed[i, PLACED_MATRIX + 3 + axis]
+        az = placed[i, PLACED_MATRIX + 6 + axis]
+        size = norm(ax, ay, az)
+        if not size > 0.0:
+            continue
+        px = placed[i, PLACED_CENTRE] + sign * ax
+        py = placed[i, PLACED_CENTRE + 1] + sign * ay
+        pz = placed[i, PLACED_CENTRE + 2] + sign * az
+        for _ in range(_ASCENTS):
+            # The part's farthest point along the gradient is farther out.
+            wx, wy, wz = times(
+                arenas,
+                a,
+                BODY_INVERSE,
+                px - arenas[a, BODY_CENTRE],
+                py - arenas[a, BODY_CENTRE + 1],
+                pz - arenas[a, BODY_CENTRE + 2],
+            )
+            nx, ny, nz = transposed_times(arenas, a, BODY_INVERSE, wx, wy, wz)
+            px, py, pz = _farthest(placed, i, nx, ny, nz)
+        if norm(px - fx, py - fy, pz - fz) > _SAME * size:
+            count = _enter_wall(
+                model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach
+            )
+    return count
+
+
 @kernel
 def contact_model(scene, placed, pose, within, inverse_reach, model, work):
     """Fill ``model`` (CAPACITY, MODEL) with every pair whose gap is below ``within``: their count.
@@ -88,27 +164,9 @@ def contact_model(scene, placed, pose, within, inverse_reach, model, work):
     for i in range(placed.shape[0]):
         work[0] += arenas.shape[0]
         for a in range(arenas.shape[0]):
-            g, ux, uy, uz = extent_in_arena(arenas, a, placed, i, scene[SCALE], BODY_INVERSE, True)
-            length = norm(ux, uy, uz)
-            if not length > 0.0:
-                continue
-            ux, uy, uz = ux / length, uy / length, uz / length
-            px, py, pz = _farthest(placed, i, ux, uy, uz)
-            # |A⁻ᵀw| for the point's unit image w turns the margin into a distance.
-            wx, wy, wz = times(
-                arenas,
-                a,
-                BODY_INVERSE,
-                px - arenas[a, BODY_CENTRE],
-                py - arenas[a, BODY_CENTRE + 1],
-                pz - arenas[a, BODY_CENTRE + 2],
+            count = _enter_walls(
+                model, count, arenas, a, placed, i, pose, within, scene, inverse_reach
             )
-            nx, ny, nz = transposed_times(arenas, a, BODY_INVERSE, wx, wy, wz)
-            root = math.sqrt(g)
-            gap = (1.0 - root) * norm(wx, wy, wz) / norm(nx, ny, nz) - clearance
-            if gap < within:
-                px, py, pz = px - pose[0], py - pose[1], pz - pose[2]
-                count = _enter(model, count, gap, -ux, -uy, -uz, px, py, pz, inverse_reach)
         cx = placed[i, PLACED_CENTRE]
         cy = placed[i, PLACED_CENTRE + 1]
         cz = placed[i, PLACED_CENTRE + 2]

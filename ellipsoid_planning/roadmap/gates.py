@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -18,6 +19,10 @@ from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import centring, layout, placement, saddles
 
 Array = NDArray[np.float64]
+
+# Directions in which walls are looked for, in the plane and in space.
+_HEADINGS = 64
+_SPREAD = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +77,8 @@ class GateFinder:
         self.widest = widest
         self._dimension = cspace.dimension
         self._obstacles = layout.obstacle_rows(cspace.scene)
+        self._arenas = layout.arena_rows(cspace.scene)
+        self._directions, self._around = _directions(cspace.dimension)
         self._parts, self._placed = parts, placed
         self._workspace = workspace
 
@@ -81,6 +88,8 @@ class GateFinder:
         near = [
             (a, b) for a, b in combinations(range(len(pairs)), 2) if self._near(pairs[a], pairs[b])
         ]
+        for pair in pairs:
+            yield from self._at_walls(*pair)
         for a, b in near:
             yield self._gate([pairs[a], pairs[b]])
         if self._dimension == 2:
@@ -90,6 +99,32 @@ class GateFinder:
             for c in range(b + 1, len(pairs)):
                 if (a, c) in joined and (b, c) in joined:
                     yield self._gate([pairs[a], pairs[b], pairs[c]])
+
+    def _at_walls(self, part: int, body: int) -> Iterator[Gate | None]:
+        """Gates between an obstacle and the arenas, about where their normals are parallel.
+
+        Along a direction the obstacle, the part and the wall behind them leave the difference of
+        the arena's support function and those of the other two; its local minima, and in space
+        its saddles, are gates.
+        """
+        part_matrix = self._placed[part, layout.PLACED_MATRIX : layout.PLACED_MATRIX + 9]
+        part_matrix = part_matrix.reshape(3, 3)
+        obstacle = self._obstacles[body]
+        for arena in self._arenas:
+            u = self._directions
+            room = _support(arena, u) - _support(obstacle, u)
+            room -= 2.0 * np.linalg.norm(u @ part_matrix, axis=1)
+            higher = room[self._around] > room[:, None]
+            changes = np.sum(higher != np.roll(higher, 1, axis=1), axis=1)
+            # All round higher: a local minimum. Higher, lower, higher, lower: a saddle.
+            for k in np.flatnonzero((changes >= 4) | higher.all(axis=1)):
+                if 0.0 < room[k] < 2.0 * self.widest:
+                    # Half-way between the obstacle and the wall.
+                    point = _farthest(obstacle, u[k]) + 0.5 * room[k] * u[k]
+                    point += part_matrix @ part_matrix.T @ u[k] / np.linalg.norm(part_matrix.T @ u[k])
+                    point -= self._placed[part, :3]
+                    yield Gate(point, 0.5 * float(room[k]), np.array([u[k], -u[k]]))
+            yield None
 
     def _near(self, first: tuple[int, int], second: tuple[int, int]) -> bool:
         apart = saddles.boxes_apart(self._obstacles, self._placed, *first, *second)
@@ -112,3 +147,37 @@ class GateFinder:
             self._workspace,
         )
         return Gate(point, float(gap), normals) if found and gap < self.widest else None
+
+
+def _support(body: Array, directions: Array) -> Array:
+    """Support function of a body row in ``directions`` (m, 3)."""
+    matrix = body[layout.BODY_MATRIX : layout.BODY_MATRIX + 9].reshape(3, 3)
+    return np.asarray(directions @ body[:3] + np.linalg.norm(directions @ matrix, axis=1))
+
+
+def _farthest(body: Array, direction: Array) -> Array:
+    """The point of a body row that lies farthest along ``direction`` (3,)."""
+    matrix = body[layout.BODY_MATRIX : layout.BODY_MATRIX + 9].reshape(3, 3)
+    image = matrix.T @ direction
+    return np.asarray(body[:3] + matrix @ image / np.linalg.norm(image))
+
+
+@cache
+def _directions(dimension: int) -> tuple[Array, NDArray[np.int64]]:
+    """Directions (m, 3) all round, and those next to each (m, k), in order round it."""
+    if dimension == 2:
+        angles = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
+        index = np.arange(_HEADINGS)
+        around = np.column_stack([index - 1, (index + 1) % _HEADINGS])
+        return np.column_stack([np.cos(angles), np.sin(angles), np.zeros(_HEADINGS)]), around
+    k = np.arange(_SPREAD) + 0.5
+    z, turn = 1.0 - 2.0 * k / _SPREAD, np.pi * (3.0 - np.sqrt(5.0)) * k
+    across = np.sqrt(1.0 - z * z)
+    u = np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
+    around = np.argsort(-(u @ u.T), axis=1)[:, 1:7]
+    first = np.cross(u, np.eye(3)[np.argmin(np.abs(u), axis=1)])
+    second = np.cross(u, first)
+    angles = np.arctan2(
+        np.einsum("mkc,mc->mk", u[around], second), np.einsum("mkc,mc->mk", u[around], first)
+    )
+    return u, np.take_along_axis(around, np.argsort(angles, axis=1), axis=1)

@@ -15,6 +15,8 @@ from ellipsoid_planning.roadmap.gates import Gate, GateFinder, probe
 Array = NDArray[np.float64]
 
 _SAMPLES = 15
+# Smaller turns between start and goal need no place of their own [rad].
+_LEAST_TURN = 0.5
 # Obstacles among which the gates of one query are looked for.
 _BODIES = 24
 
@@ -44,6 +46,9 @@ def seeds_of_query(
             yield from _on_the_way(cspace, first, last)
     for first in starts:
         for last in goals:
+            yield from _turning(cspace, first, last)
+    for first in starts:
+        for last in goals:
             yield from _at_gates(cspace, first, last, workspace)
 
 
@@ -65,6 +70,27 @@ def _on_the_way(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
         yield Seed(poses[(begin + end - 1) // 2], step)
     yield Seed(first, step, centred=False)
     yield Seed(last, -step, centred=False)
+
+
+def _turning(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
+    """Half-way of the turn from start to goal, either way round, in the middle of each arena.
+
+    Where an arena is hardly larger than the robot, turning is what is narrow.
+    """
+    reach = centring.robot_reach(cspace.scene)
+    step = np.empty(6)
+    contact_model.difference(first, last, reach, step)
+    turn = float(np.linalg.norm(step[3:])) / reach
+    if not cspace.rotates or turn < _LEAST_TURN:
+        return
+    step[:3] = 0.0
+    for arena in cspace.world.arenas:
+        for way in (1.0, 1.0 - 2.0 * np.pi / turn):
+            pose = np.empty(7)
+            contact_model.moved(first, 0.5 * way * step, 1.0 / reach, pose)
+            pose[:3] = 0.0
+            pose[: cspace.dimension] = arena.centre
+            yield Seed(pose, way * step)
 
 
 def _at_gates(

@@ -104,9 +104,9 @@ def benchmark(
     campaign = _campaign(problems, line.contenders, runs, time_limit, memory_limit, seed)
     store = Store(output)
     store.check(campaign)
-    for note in line.notes:
-        say(f"Note: {note}")
     with executor(cluster, jobs) as execute:
+        for note in line.notes:
+            say(f"Note: {note}")
         interrupted = _note_interrupts()
         store.open(campaign)
         records = run_campaign(campaign, store, execute, interrupted)

@@ -68,6 +68,7 @@ def _local_cluster(distributed: Any, workers: int) -> Any:
         dashboard_address=None,
         memory_limit=None,  # each run has its own
         host="127.0.0.1",
+        preload=["planners.benchmark.quiet_worker"],
     )
 
 

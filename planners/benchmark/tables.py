@@ -7,6 +7,7 @@ import io
 import math
 from collections.abc import Iterable, Sequence
 
+from planners.benchmark.growth import growth_notes
 from planners.benchmark.run import RunRecord
 from planners.benchmark.summary import Quantile, Quartiles, Row
 
@@ -84,9 +85,9 @@ def _text(quantile: Quantile, scale: float) -> str:
 
 
 def notes(rows: Iterable[Row]) -> list[str]:
-    """Sentences for below the table: what counts how, and the paths that are not free."""
+    """Sentences for below the table: what counts how, families, and paths that are not free."""
     rows = list(rows)
-    lines = []
+    lines = growth_notes(rows)
     if any(row.solved < row.runs for row in rows):
         lines.append("Runs without a path count as the time limit at least (>).")
     for row in rows:

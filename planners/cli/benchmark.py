@@ -111,8 +111,7 @@ def benchmark(
         store.open(campaign)
         records = run_campaign(campaign, store, execute, interrupted)
     if records:
-        with working("Writing database, tables and figures"):
-            report(output, campaign, records)
+        report(output, campaign, records)
     if interrupted.is_set():
         say("Interrupted. The finished runs are kept; give the same command to go on.")
         raise typer.Exit(INTERRUPTED)

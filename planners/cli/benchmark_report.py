@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from planners.cli.terminal import result_console, say
+from planners.cli.terminal import result_console, say, working
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -28,29 +28,40 @@ def report(folder: Path, campaign: Campaign, records: Sequence[RunRecord]) -> No
     Raises:
         EllipsoidPlanningError: something cannot be written.
     """
-    from ellipsoid_planning import atomic
-    from planners.benchmark.outputs import write_outputs
     from planners.benchmark.summary import summarised
-    from planners.view.figures_benchmark import write_figures
 
     rows = summarised(campaign, records)
-    written = write_outputs(folder, campaign, records, rows)
-    atomic.write_text(folder / "summary.txt", _text(rows))
-    written.extend(write_figures(folder / "figures", campaign, records, rows))
+    with working("Writing database, tables and figures"):
+        written = _write(folder, campaign, records, rows)
     _print(rows)
     for path in written:
         say(f"Wrote {path}")
 
 
+def _write(
+    folder: Path, campaign: Campaign, records: Sequence[RunRecord], rows: Sequence[Row]
+) -> list[Path]:
+    from ellipsoid_planning import atomic
+    from planners.benchmark.outputs import write_outputs
+    from planners.view.figures_benchmark import write_figures
+
+    written = write_outputs(folder, campaign, records, rows)
+    text = folder / "summary.txt"
+    atomic.write_text(text, _text(rows))
+    written.append(text)
+    written.extend(write_figures(folder / "figures", campaign, records, rows))
+    return written
+
+
 def _print(rows: Sequence[Row]) -> None:
     from planners.benchmark.tables import notes
 
-    if sys.stdout.isatty():
-        result_console().print(*_tables(rows), sep="\n")
-    else:  # nothing is folded for a file or a pipe
+    if not sys.stdout.isatty():  # nothing is folded for a file or a pipe
         sys.stdout.write(_text(rows))
         sys.stdout.flush()
-    for note in notes(rows) if sys.stdout.isatty() else ():
+        return
+    result_console().print(*_tables(rows), sep="\n")
+    for note in notes(rows):
         say(f"Note: {note}")
 
 

@@ -74,6 +74,7 @@ def draw_family(name: str, rows: Sequence[Row], limit: float, looks: Mapping[str
     _frame(axes, limit, stuck=bool(stuck))
     for curve in reversed(curves):  # ours last, on top
         _draw_curve(axes, curve, limit)
+    _fit(axes, curves, limit)
     _label_ends(axes, [curve for curve in curves if not curve.bound[-1]])
     if stuck:
         _draw_lanes(panels[0][0], stuck)
@@ -160,6 +161,15 @@ def _draw_curve(axes: Axes, curve: _Curve, limit: float) -> None:
     _mark(axes, x[~bound], y[~bound], look, filled=True)
     arrives = bound & ~np.concatenate([[False], bound[:-1]])
     _mark(axes, x[arrives], y[arrives], look, filled=False)
+
+
+def _fit(axes: Axes, curves: Sequence[_Curve], limit: float) -> None:
+    """Show all that was measured and, where it matters, the time limit."""
+    told = [value for curve in curves for value in curve.first if value < limit]
+    low = min(told) if told else 0.1 * limit
+    stuck = any(curve.bound.any() for curve in curves)
+    high = limit if stuck else max(value for curve in curves for value in curve.third)
+    axes.set_ylim(0.6 * low, (1.25 if stuck else 1.6) * high)
 
 
 def _mark(

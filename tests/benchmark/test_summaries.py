@@ -8,6 +8,7 @@ import pytest
 
 from planners.benchmark.campaign import Campaign
 from planners.benchmark.contenders import Contender
+from planners.benchmark.growth import growths
 from planners.benchmark.problems import Problem
 from planners.benchmark.summary import Quantile, quartiles, summarised
 from planners.benchmark.tables import cells, duration, markdown, notes, summary_csv
@@ -83,3 +84,22 @@ def test_times_in_units_that_suit():
         "3 s",
         "61.2 s",
     ]
+
+
+def test_the_growth_of_a_family():
+    contender = Contender("RRT", "plugin", "RRT")
+    problems = [Problem(f"gap-{c:g}", ({},), "gap-2d", c) for c in (1e-1, 1e-2, 1e-3, 1e-4)]
+    records = [
+        record("RRT", run, problem=f"gap-{c:g}", seconds=1e-3 * c**-0.5)
+        for c in (1e-1, 1e-2, 1e-3)
+        for run in range(2)
+    ]
+    records.extend(record("RRT", run, "timeout", "gap-0.0001", seconds=10.0) for run in range(2))
+    rows = summarised(Campaign(tuple(problems), (contender,), 2, LIMIT, 1.0, 1), records)
+    (growth,) = growths(rows)
+    assert growth.exponent == pytest.approx(0.5)
+    assert (growth.largest, growth.smallest, growth.first_failure) == (1e-1, 1e-3, 1e-4)
+    sentence = (
+        "gap-2d, RRT: time ~ clearance^-0.50 from 1e-1 to 1e-3, first failure at clearance 1e-4"
+    )
+    assert sentence in notes(rows)

@@ -39,7 +39,7 @@ def campaign(tmp_path_factory):
         "rabbit-2d-open",
         *("--family", "turned-gap", "--clearances", "1e-1,1e-2", "--dimension", 2),
         *("--planners", "HighwayRoadmap,RRTConnect", "--runs", 2, "--time-limit", 5),
-        *("--output", "out", "--seed", 3),
+        *("--output", "out", "--seed", 3, "--jobs", 2),
         folder=folder,
     )
     assert done.returncode == 0, done.stderr

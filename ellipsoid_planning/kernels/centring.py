@@ -47,6 +47,8 @@ class Workspace(NamedTuple):
     step: NDArray[np.float64]
     trial: NDArray[np.float64]
     ahead: NDArray[np.float64]
+    across: NDArray[np.float64]
+    slide: NDArray[np.float64]
     next_pose: NDArray[np.float64]
     pairs: NDArray[np.int64]
 
@@ -63,6 +65,8 @@ def new_workspace(scene):
         np.empty(MOST_ACTIVE),
         np.empty(6),
         np.empty(7),
+        np.empty(6),
+        np.empty(6),
         np.empty(6),
         np.empty(7),
         np.zeros(1, dtype=np.int64),
@@ -91,27 +95,35 @@ def _put_across(model, count, across):
         model[k, ALONG] = along
 
 
-@inlined
-def _shortened(step, longest):
-    """Shorten ``step`` to ``longest``; returns whether that was needed."""
+@kernel
+def step_length(step):
+    """Euclidean length of a step (6,)."""
     square = 0.0
     for m in range(6):
         square += step[m] * step[m]
-    if square <= longest * longest:
-        return False
-    scale = longest / math.sqrt(square)
+    return math.sqrt(square)
+
+
+@inlined
+def _shortened(step, longest):
+    """Shorten ``step`` to ``longest``: the factor."""
+    length = step_length(step)
+    if length <= longest:
+        return 1.0
+    scale = longest / length
     for m in range(6):
         step[m] *= scale
-    return True
+    return scale
 
 
 @kernel
-def centre(scene, pose, across, turns, within, enough, steps, work):
+def centre(scene, pose, across, turns, within, enough, precision, steps, work):
     """Move ``pose`` (7,) to where its smallest gap is largest: (gap, slope).
 
-    Stops once the gap is ``enough``, or after ``steps`` models. ``across`` (6,) is a unit direction
-    to which steps stay orthogonal, or zero; ``turns`` whether the robot may turn. Returns the gap,
-    an estimate of what can be proved, and how it changes along ``across``.
+    Stops once the gap is ``enough``, when no more than ``precision`` of it is to gain, or after
+    ``steps`` models. ``across`` (6,) is a unit direction to which steps stay orthogonal, or zero;
+    ``turns`` whether the robot may turn. Returns the gap, an estimate of what can be proved, and
+    how it changes along ``across``.
     """
     reach = robot_reach(scene)
     inverse_reach = 1.0 / reach if turns else 0.0
@@ -128,9 +140,8 @@ def centre(scene, pose, across, turns, within, enough, steps, work):
         slope = 0.0
         for k in range(work.active[MOST_ACTIVE]):
             slope += work.weights[k] * here[work.active[k], ALONG]
-        if _shortened(step, longest):
-            promised = gap + 0.1 * abs(promised - gap)
-        if promised - gap <= 1e-3 * abs(gap) + 1e-14 * reach:
+        gain = _shortened(step, longest) * (promised - gap)
+        if gain <= precision * abs(gap) + 1e-14 * reach:
             if size >= _LONGEST_STEPS * reach:
                 break
             # What is left to gain may lie in a direction of little curvature.
@@ -141,16 +152,14 @@ def centre(scene, pose, across, turns, within, enough, steps, work):
             trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
         more = contact_model(scene, placed, trial, within, inverse_reach, there, work.pairs)
         value = smallest_gap(there, more, within)
-        good = value > gap + 0.1 * (promised - gap)
-        if good and value > gap + 0.5 * (promised - gap):
-            size = min(3.0 * size, _LONGEST_STEPS * reach)
+        # A gain that falls short of the promise by a share tells the curvature, and that the best
+        # size: s/(2·share).
+        share = min(max(1.0 - (value - gap) / gain, 0.125), 2.5)
+        if share > 1.0:
+            longest = 0.5 * step_length(step)
+        elif share < 0.5:
             longest = min(2.0 * longest, 0.5 * reach)
-        elif not good:
-            size *= 0.2
-            length = 0.0
-            for m in range(6):
-                length += step[m] * step[m]
-            longest = min(longest, math.sqrt(length))
+        size = min(size / (2.0 * share), _LONGEST_STEPS * reach)
         if value > gap:
             for k in range(7):
                 pose[k] = trial[k]

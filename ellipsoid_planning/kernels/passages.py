@@ -7,7 +7,7 @@ a play ε is followed in steps of about √(ε/κ), a straight one in one.
 
 import math
 
-from .centring import centre, robot_reach
+from .centring import centre, robot_reach, step_length
 from .compile import inlined, kernel
 from .contact_model import GAP, GRADIENT, contact_model, difference, moved, smallest_gap
 from .layout import CLEARANCE
@@ -24,24 +24,26 @@ CLOSED = 4.0
 STATE = 0
 SIZE = 1
 TRAVELLED = 2
-PROGRESS = 3
+# How many more steps are taken before a straight one is tried again.
+BENT = 3
+PROGRESS = 4
 
 _CENTRING = 12
 _FIRST_CENTRING = 60
 _SECANTS = 16
+# To which share of the gap robots are centred.
+_ROUGH = 1e-2
+_PRECISE = 1e-4
+# The gap at a narrowest place may be smaller by this share than where it was taken for found.
+_FALL = 0.05
 # Shortest step, in units of the robot's reach.
 _SHORTEST = 1e-7
 # What is left of a unit vector if it counts as independent of others.
 _INDEPENDENT = 0.05
-
-
-@kernel
-def direction_length(direction):
-    """Euclidean length of a step (6,)."""
-    square = 0.0
-    for m in range(6):
-        square += direction[m] * direction[m]
-    return math.sqrt(square)
+# Which share of a step's length its translation must have for centring across that alone.
+_TRANSLATES = 0.3
+# After how many steps along a bent passage a straight one is tried again.
+_BENT = 6.0
 
 
 @inlined
@@ -53,27 +55,32 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
     """
     reach = robot_reach(scene)
     inverse_reach = 1.0 / reach if turns else 0.0
-    length = max(direction_length(direction), 1e-300)
+    length = max(step_length(direction), 1e-300)
     for m in range(6):
         direction[m] /= length
     here, ahead = path[0], work.ahead
-    gap, slope = centre(scene, here, direction, turns, within, wide, _FIRST_CENTRING, work)
+    gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
     if gap >= wide:
         progress[STATE] = OPEN
         return
     size = -0.2 * reach if slope > 0.0 else 0.2 * reach
     low, high, low_slope, high_slope = -math.inf, math.inf, 0.0, 0.0
-    place = 0.0
+    place, side = 0.0, 0
     for _ in range(_SECANTS):
+        # Illinois: an end that stays twice counts half, or the other would creep.
         if slope < 0.0:
-            low, low_slope = place, slope
+            high_slope *= 0.5 if side < 0 else 1.0
+            low, low_slope, side = place, slope, -1
         else:
-            high, high_slope = place, slope
+            low_slope *= 0.5 if side > 0 else 1.0
+            high, high_slope, side = place, slope, 1
         if low > -math.inf and high < math.inf:
-            # Regula falsi, kept away from the ends.
-            share = min(max(low_slope / (low_slope - high_slope), 0.05), 0.95)
+            # The secant's root, kept away from the ends.
+            share = min(max(low_slope / (low_slope - high_slope), 0.02), 0.98)
             target = low + share * (high - low)
-            if high - low < 1e-7 * reach or abs(slope) < 1e-6:
+            # Between the two places the gap falls by no more than this.
+            fall = min(abs(low_slope), abs(high_slope)) * (high - low)
+            if high - low < 1e-7 * reach or (gap > 0.0 and fall < _FALL * gap):
                 break
         else:
             target = place + size
@@ -84,9 +91,13 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
             ahead[m] = (target - place) * direction[m]
         moved(here, ahead, inverse_reach, here)
         place = target
-        gap, slope = centre(scene, here, direction, turns, within, wide, _FIRST_CENTRING, work)
+        gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
         if gap >= wide:
             break
+    if gap > 0.0:
+        gap, slope = centre(
+            scene, here, direction, turns, within, wide, _PRECISE, _FIRST_CENTRING, work
+        )
     if gap <= 0.0:
         progress[STATE] = CLOSED
     else:
@@ -94,11 +105,11 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
 
 
 @inlined
-def _along_walls(scene, pose, inverse_reach, within, direction, work):
-    """Turn ``direction`` so that the robot slides along the bodies that are nearest to it.
+def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
+    """Write to ``slide`` the translation near ``direction`` along the bodies nearest to the robot.
 
-    Then their hyperplanes clear a straight translation of any length. If there is no such
-    direction (the bodies cage the robot, or it would have to turn), nothing is changed.
+    Their hyperplanes clear it, at any length. If there is none (the bodies cage the robot, or it
+    would have to turn), ``slide`` is ``direction`` itself.
     """
     model, normals = work.first, work.second
     count = contact_model(scene, work.placed, pose, within, inverse_reach, model, work.pairs)
@@ -111,12 +122,11 @@ def _along_walls(scene, pose, inverse_reach, within, direction, work):
             normals[rank, m] = model[k, GRADIENT + m]
         if _orthogonalise(normals, rank, normals[rank]) > _INDEPENDENT:
             rank += 1
-    slide = work.ahead
     for m in range(6):
         slide[m] = direction[m] if m < 3 else 0.0
-    if _orthogonalise(normals, rank, slide) > _INDEPENDENT:
+    if _orthogonalise(normals, rank, slide) <= _INDEPENDENT:
         for m in range(6):
-            direction[m] = slide[m]
+            slide[m] = direction[m]
 
 
 @kernel
@@ -137,25 +147,31 @@ def _orthogonalise(rows, count, vector):
 
 
 @kernel
-def _next_pose(scene, here, size, direction, turns, within, wide, straight, work):
-    """Write the next pose along a passage to ``work.next_pose``: (its gap, length of the step)."""
+def _next_pose(scene, here, size, direction, turns, within, wide, steps, work):
+    """Write the next pose along a passage to ``work.next_pose``: (its gap, length of the step).
+
+    It is centred in up to ``steps`` steps, across the translation where that is most of the way.
+    """
     reach = robot_reach(scene)
     inverse_reach = 1.0 / reach if turns else 0.0
-    ahead, pose = work.ahead, work.next_pose
+    ahead, pose, across = work.ahead, work.next_pose, work.across
     for m in range(6):
         ahead[m] = size * direction[m]
+        across[m] = direction[m] if m < 3 else 0.0
     moved(here, ahead, inverse_reach, pose)
-    steps = 0 if straight else _CENTRING
-    gap, _ = centre(scene, pose, direction, turns, within, wide, steps, work)
+    length = step_length(across)
+    for m in range(6):
+        across[m] = across[m] / length if length > _TRANSLATES else direction[m]
+    gap, _ = centre(scene, pose, across, turns, within, wide, _PRECISE, steps, work)
     difference(here, pose, reach if turns else 0.0, ahead)
     turned = math.sqrt(ahead[3] ** 2 + ahead[4] ** 2 + ahead[5] ** 2)
     if turned > 0.0 and turned <= 1.1 * SMALL_ROTATION * reach:
         # OMPL does not interpolate rotations that are so small: rather do not turn at all.
         for m in range(4):
             pose[3 + m] = here[3 + m]
-        gap, _ = centre(scene, pose, direction, False, within, wide, steps, work)
+        gap, _ = centre(scene, pose, across, False, within, wide, _PRECISE, steps, work)
         difference(here, pose, 0.0, ahead)
-    return gap, direction_length(ahead)
+    return gap, step_length(ahead)
 
 
 @kernel
@@ -175,25 +191,31 @@ def follow(
     inverse_reach = 1.0 / reach if turns else 0.0
     workspace, placed, stack = motion
     if progress[STATE] == NEW:
-        progress[SIZE], progress[TRAVELLED] = reach, 0.0
+        progress[SIZE] = reach
         _begin(scene, progress, direction, turns, within, wide, path, work)
         return count
-    if progress[TRAVELLED] == 0.0:
-        _along_walls(scene, path[count - 1], inverse_reach, within, direction, work)
-    ahead, next_pose = work.ahead, work.next_pose
+    ahead, next_pose, slide = work.ahead, work.next_pose, work.slide
     while progress[STATE] == FOLLOWING and count < limit:
         size, here = progress[SIZE], path[count - 1]
-        straight = progress[TRAVELLED] == 0.0 and size > 0.1 * reach
-        gap, length = _next_pose(
-            scene, here, size, direction, turns, within, wide, straight, work
-        )
-        proved = gap > 0.0 and length < 2.0 * size
-        if proved:
-            proved = (
-                prove_motion(scene, here, next_pose, scene[CLEARANCE], workspace, placed, stack) > 0
-            )
+        proved, gap, length = False, 0.0, 0.0
+        straight = progress[BENT] <= 0.0
+        if straight:
+            _along_walls(scene, here, inverse_reach, within, direction, slide, work)
+        for attempt in range(0 if straight else 1, 2):
+            if proved:
+                continue
+            steps, course = (0, slide) if attempt == 0 else (_CENTRING, direction)
+            gap, length = _next_pose(scene, here, size, course, turns, within, wide, steps, work)
+            if gap > 0.0 and length < 2.0 * size:
+                proved = (
+                    prove_motion(scene, here, next_pose, scene[CLEARANCE], workspace, placed, stack)
+                    > 0
+                )
+            if attempt == 0 and not proved:
+                progress[BENT] = _BENT
         if not proved:
             progress[SIZE] = 0.4 * size
+            progress[BENT] -= 1.0
             if progress[SIZE] < _SHORTEST * reach:
                 progress[STATE] = BLOCKED
             continue
@@ -203,6 +225,7 @@ def follow(
             direction[m] = ahead[m] / length
         count += 1
         progress[TRAVELLED] += length
+        progress[BENT] -= 1.0
         progress[SIZE] = min(2.0 * size, reach)
         if gap >= wide:
             progress[STATE] = OPEN

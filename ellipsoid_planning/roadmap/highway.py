@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,7 @@ from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
+from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
 from ellipsoid_planning.roadmap.shorten import shorten
 
 Array = NDArray[np.float64]
@@ -65,7 +66,7 @@ class HighwayRoadmap:
         self.cspace = cspace
         self.parameters = parameters or RoadmapParameters()
         self.levels: list[Level] = []
-        self.passages = PassageFinder(cspace)
+        self.passages: list[PassageFinder] = []
         self._axis = self.parameters.checked_axis(cspace.dimension)
         self._axes = cspace.dimension if self.parameters.axis is None else 1
         self._weight = self._metric_weight()
@@ -94,13 +95,12 @@ class HighwayRoadmap:
             if should_stop():
                 return Outcome(TIMEOUT)
         best: Array | None = None
-        self.passages.begin(begin, end)
-        for index in range((self.parameters.refine + 1) * self._axes):
-            level = self._level(index, begin, end)
+        for finder in self.passages:
+            finder.rest()
+        for attempt in self._attempts(np.vstack([begin, end])):
+            level = self._level(*attempt, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
-            status, path = level.solve(
-                begin, end, inflation, self._weight, should_stop, self.passages
-            )
+            status, path = level.solve(begin, end, inflation, self._weight, should_stop)
             if status == roadmap_tables.SOLVED:
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)
@@ -115,12 +115,12 @@ class HighwayRoadmap:
     def prepare(self) -> None:
         """Make the first level, which depends on no query; :meth:`solve` does it if need be."""
         if not self.levels:
-            self.levels.append(self._new_level(0))
+            self.levels.append(self._new_level(0, self._axis, None))
 
     def clear(self) -> None:
         """Forget everything computed so far."""
         self.levels = []
-        self.passages = PassageFinder(self.cspace)
+        self.passages = []
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
 
@@ -130,9 +130,9 @@ class HighwayRoadmap:
         total = {
             "levels": len(self.levels),
             "direct_motions": self._direct,
-            "passages": len(self.passages.found),
-            "seeds": self.passages.seeds_tried,
-            "closed_seeds": self.passages.seeds_closed,
+            "passages": sum(len(finder.found) for finder in self.passages),
+            "seeds": sum(finder.seeds_tried for finder in self.passages),
+            "closed_seeds": sum(finder.seeds_closed for finder in self.passages),
         }
         for level in self.levels:
             for name, count in level.statistics.items():
@@ -148,10 +148,30 @@ class HighwayRoadmap:
         ]
         return 0.5 * max(reach)
 
-    def _level(self, index: int, starts: Array, goals: Array) -> Level:
-        while len(self.levels) <= index:
-            self.levels.append(self._new_level(len(self.levels)))
-        level = self.levels[index]
+    def _attempts(self, ends: Array) -> Iterator[tuple[int, int, Box | None]]:
+        """What to try for queries between ``ends`` (m, 7), in turn: (refinement, turn, box).
+
+        Finer levels come when the whole world was looked at, and begin at the ends again. The
+        axes take turns, unless one was asked for, so that a scene that one axis suits costs at
+        most n times what it costs with that axis.
+        """
+        for refinement in range(self.parameters.refine + 1):
+            for box in query_boxes(self.cspace, ends):
+                for turn in range(self._axes):
+                    yield refinement, turn, box
+
+    def _level(
+        self, refinement: int, turn: int, box: Box | None, starts: Array, goals: Array
+    ) -> Level:
+        axis = (self._axis - turn) % self.cspace.dimension
+        for level in self.levels:
+            if (level.refinement, level.axis) == (refinement, axis) and is_same(level.box, box):
+                break
+        else:
+            level = self._new_level(refinement, axis, box)
+            self.levels.append(level)
+        if not level.passages.begun:
+            level.passages.begin(starts, goals)
         if self.cspace.rotates:
             quaternions = np.empty((_BETWEEN, 4))
             for first in starts:
@@ -161,27 +181,30 @@ class HighwayRoadmap:
                             level.grid.layer_of(quaternion)
         return level
 
-    def _new_level(self, index: int) -> Level:
-        """Level ``index``: the axes take turns at each resolution, unless one was asked for.
-
-        So a scene that one axis suits costs at most n times what it costs with that axis.
-        """
+    def _new_level(self, refinement: int, axis: int, box: Box | None) -> Level:
         dimension, given = self.cspace.dimension, self.parameters
-        index, turn = divmod(index, self._axes)
-        axis = (self._axis - turn) % dimension
+        local = within(self.cspace, box)
         lines = given.line_count(dimension)
-        if index > 0:
-            lines = min(round(lines * _MORE_LINES**index), max(lines, most_lines(dimension)))
-        columns, neighbours = grid_columns(self.cspace.world, axis, lines)
+        if refinement > 0:
+            lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
+        columns, neighbours = grid_columns(local.world, axis, lines)
         if not self.cspace.rotates:
             orientations = np.empty((0, 4))
         else:
-            count = min(round(given.layer_count(dimension) * _MORE_LAYERS**index), MOST_LAYERS)
+            count = min(round(given.layer_count(dimension) * _MORE_LAYERS**refinement), MOST_LAYERS)
             orientations = spread_orientations(dimension, count)
-            if index > 0:
+            if refinement > 0:
                 orientations = random_turn(orientations, dimension, self._random)
         grid = Grid(columns, neighbours, orientations, given.neighbour_count(dimension))
-        return Level(self.cspace, grid, axis)
+        return Level(local, grid, axis, self._finder(local, box), refinement, box)
+
+    def _finder(self, cspace: CSpace, box: Box | None) -> PassageFinder:
+        """The finder of passages in a box, which the box's levels share."""
+        for level in self.levels:
+            if is_same(level.box, box):
+                return level.passages
+        self.passages.append(PassageFinder(cspace))
+        return self.passages[-1]
 
     def _direct_motion(self, start: Array, goals: Array) -> Array | None:
         """The motion (2, 7) to the first goal that it is proved free to, or None."""
@@ -210,9 +233,7 @@ class HighwayRoadmap:
         for inflation in _LOWER_INFLATIONS:
             if should_stop():
                 return best
-            status, path = level.solve(
-                starts, goals, inflation, self._weight, should_stop, self.passages
-            )
+            status, path = level.solve(starts, goals, inflation, self._weight, should_stop)
             if status == roadmap_tables.SOLVED:
                 best = self._better(best, self._shortened(path), on_path)
         while not should_stop():
@@ -250,7 +271,8 @@ class HighwayRoadmap:
         if robot.rotates and robot.dimension == 3:
             ends[:, -1] = 1.0
         poses = self.cspace.poses(ends)
-        self._level(0, poses[:1], poses[1:]).compile_kernels(poses)
+        self._level(0, 0, None, poses[:1], poses[1:]).compile_kernels(poses)
+        within(self.cspace, (world.low, world.low + 1e-3 * (world.high - world.low)))
         self.cspace.is_valid(ends[0])
         self._direct_motion(poses[0], poses[:1])
         if self.parameters.anytime:

@@ -12,6 +12,7 @@ from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap, roadmap_path, roadmap_tables
 from ellipsoid_planning.roadmap.grid import Grid
 from ellipsoid_planning.roadmap.passages import PassageFinder
+from ellipsoid_planning.roadmap.regions import Box
 from ellipsoid_planning.roadmap.tables import (
     grown,
     new_tables,
@@ -34,16 +35,30 @@ class Level:
 
     Attributes:
         grid: its columns and layers.
+        axis: the swept axis.
+        passages: finds passages for it, and for the other levels of its part of the world.
+        refinement: how many coarser resolutions there are.
+        box: the corners (n,), (n,) of the part of the world that it covers; None for all of it.
         tables: lines, nodes and edges known so far (kernels.roadmap.Roadmap).
     """
 
-    def __init__(self, cspace: CSpace, grid: Grid, axis: int) -> None:
+    def __init__(
+        self,
+        cspace: CSpace,
+        grid: Grid,
+        axis: int,
+        passages: PassageFinder,
+        refinement: int = 0,
+        box: Box | None = None,
+    ) -> None:
         """An empty roadmap on ``grid``, swept along ``axis``."""
         self.grid = grid
         self.axis = axis
+        self.refinement, self.box = refinement, box
         self.tables = new_tables(grid, len(cspace.robot.parts))
         self._scene = cspace.scene
-        self._passages = 0
+        self.passages = passages
+        self._taken_in = 0
         self._burst = _FIRST_TURN
 
     def solve(
@@ -53,7 +68,6 @@ class Level:
         inflation: float,
         metric_weight: float,
         should_stop: Callable[[], bool],
-        passages: PassageFinder,
     ) -> tuple[int, Array]:
         """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
 
@@ -61,7 +75,7 @@ class Level:
         are no poses unless SOLVED.
         """
         start_rows, goal_rows = self._rows(starts), self._rows(goals)
-        self._take_in(passages)
+        self._take_in()
         self.tables = grown(with_grid(self.tables, self.grid), len(starts))
         status = roadmap.begin(
             self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
@@ -73,8 +87,8 @@ class Level:
                 break
             # Passages are looked for in turns with the search, by counts of work and not by the
             # clock, so that the same query finds the same path.
-            more = passages.advance(turn, should_stop)
-            self._take_in(passages)
+            more = self.passages.advance(turn, should_stop)
+            self._take_in()
             counters = self.tables.counters
             new = counters[roadmap_tables.ENDS] > counters[roadmap_tables.OFFERED]
             if status == roadmap_tables.EXHAUSTED and not (more or new):
@@ -116,14 +130,14 @@ class Level:
             self._burst = max(self._burst // 4, 1) if late else min(2 * self._burst, _LONGEST_TURN)
         return status
 
-    def _take_in(self, passages: PassageFinder) -> None:
+    def _take_in(self) -> None:
         """Enter the passages that were found since the last call."""
-        for passage in passages.found[self._passages :]:
+        for passage in self.passages.found[self._taken_in :]:
             rows = self._rows(passage.poses[[0, -1]], joins=False)
             self.tables = with_passage(
                 with_grid(self.tables, self.grid), rows, passage.length, passage.poses
             )
-            self._passages += 1
+            self._taken_in += 1
         self.tables = grown(self.tables)
 
     def _rows(self, ends: Array, joins: bool = True) -> Array:

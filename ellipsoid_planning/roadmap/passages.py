@@ -59,11 +59,22 @@ class PassageFinder:
         self.seeds_tried = 0
         self.seeds_closed = 0
         self._work: Iterator[None] = iter(())
+        self._begun = False
         self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
         self._reach = float(centring.robot_reach(cspace.scene))
 
+    @property
+    def begun(self) -> bool:
+        """Whether passages are being looked for, or have been, since the last :meth:`rest`."""
+        return self._begun
+
+    def rest(self) -> None:
+        """Stop looking for passages; keep those that were found."""
+        self._work, self._begun = iter(()), False
+
     def begin(self, starts: Array, goals: Array) -> None:
         """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
+        self._begun = True
         self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
 
     def advance(self, steps: int, should_stop: Callable[[], bool]) -> bool:

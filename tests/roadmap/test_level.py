@@ -193,7 +193,9 @@ def test_thousands_of_starts_and_goals_fit_the_tables():
     goals = np.column_stack([random.uniform(9.0, 11.0, (2, 2)), np.full(2, 0.2)])
     starts, goals = (rows[cspace.are_valid(rows)] for rows in (starts, goals))
     assert len(starts) > 1500
-    level = HighwayRoadmap(cspace)._level(0, cspace.poses(starts[:1]), cspace.poses(goals[:1]))
+    level = HighwayRoadmap(cspace)._level(
+        0, 0, None, cspace.poses(starts[:1]), cspace.poses(goals[:1])
+    )
     status, path = level.solve(cspace.poses(starts), cspace.poses(goals), 1.0, 1.0, never)
     assert (status, len(path)) == (roadmap_tables.EXHAUSTED, 0)
     # More intervals than the tables begin with.

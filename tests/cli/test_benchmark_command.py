@@ -37,7 +37,7 @@ def campaign(tmp_path_factory):
     done = run(
         "benchmark",
         "rabbit-2d-open",
-        *("--family", "turned-gap", "--clearances", "1e-1,1e-2", "--dimension", 2),
+        *("--family", "turned-gap", "--clearances", "5e-1,2e-1", "--dimension", 2),
         *("--planners", "HighwayRoadmap,RRTConnect", "--runs", 2, "--time-limit", 5),
         *("--output", "out", "--seed", 3, "--jobs", 2),
         folder=folder,
@@ -56,8 +56,8 @@ def test_everything_is_there(campaign):
     assert (folder / "figures" / "turned-gap-2d.png").exists()
     assert counts(folder) == [(18,)]
     assert counts(folder, "SELECT name, clearance FROM experiments ORDER BY clearance")[1:] == [
-        ("turned-gap-2d-1e-2", 0.01),
-        ("turned-gap-2d-1e-1", 0.1),
+        ("turned-gap-2d-2e-1", 0.2),
+        ("turned-gap-2d-5e-1", 0.5),
     ]
     assert "Note: HighwayRoadmap runs with the plug-in checker only" in done.stderr
     assert "[18/18]" in done.stderr
@@ -65,7 +65,7 @@ def test_everything_is_there(campaign):
 
 def test_paths_are_kept_as_results(campaign):
     folder, _ = campaign
-    kept = folder / "runs" / "turned-gap-2d-1e-2" / "HighwayRoadmap"
+    kept = folder / "runs" / "turned-gap-2d-2e-1" / "HighwayRoadmap"
     results = [load_result(kept / number / "RESULT.json") for number in ("000", "001")]
     assert [result.seed for result in results] == [3, 4]
     assert all(result.path.certified for result in results)

@@ -24,8 +24,8 @@ from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 Array = NDArray[np.float64]
 
 OUTER = 7.0
-ARENA_HEIGHT = 4.5
-PEG_HEIGHT = 6.0
+ARENA_HEIGHT = 3.8
+PEG_HEIGHT = 11.0
 # At the robot's ends the wall is nearer, by a third of its half width.
 OUTLINE = 0.5
 
@@ -97,7 +97,7 @@ def _pebbles(draws: Draws, dimension: int) -> list[Ellipsoid]:
         centre = (OUTER - 0.6) * np.array([math.cos(angle), math.sin(angle)])
         axes = [draws.number(0.4, 0.3, 0.5) for _ in range(dimension)]
         rotation = draws.rotation(np.eye(dimension))
-        position = _planar(*centre, dimension)
+        position = _planar(centre[0], centre[1], dimension)
         pebbles.append(Ellipsoid(position, rotation, np.array(axes), f"pebble {number}"))
     return pebbles
 

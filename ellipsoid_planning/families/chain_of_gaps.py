@@ -20,7 +20,7 @@ ARENA = (28.0, 8.0, 8.0)
 SPACING = 12.0
 YAWS_DEG = (-25.0, 20.0, -15.0)
 ROLLS_DEG = (0.0, 70.0, -40.0)
-ROOMS = Rooms(ends=(19.8, 20.6), blockers=16.4, stray=(16.5, 20.0))
+ROOMS = Rooms(ends=(20.6, 21.4), blockers=17.6, stray=(17.0, 21.0))
 
 
 def chain_of_gaps(request: Request) -> Layout:

@@ -2,7 +2,7 @@
 
 Three openings of the same normals stand in a row, half a slot's length apart, all touching the
 same planes: the play is the stated one at each and, the bodies being so long that they are nearly
-flat, a few hundredths of the width larger in between.
+flat, at most a tenth of the width larger in between.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ellipsoid_planning.families.shapes import long_shape
 from ellipsoid_planning.families.turns import turn
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 
-ROBOT_LENGTHS = 3.0
+ROBOT_LENGTHS = 3.02
 ARENA = (34.0, 5.0, 5.0)
 WALL = Wall(thick=16.0, wide=9.0, deep=3.2)
 ROOMS = Rooms(

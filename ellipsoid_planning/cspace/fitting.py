@@ -9,6 +9,7 @@ minimisers v give the fitting orientations R for a gap of normal u by R v = ±u.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +20,7 @@ Array = NDArray[np.float64]
 
 _HEADINGS = 720
 _BISECTIONS = 60
-_DIRECTIONS = 200
+_DIRECTIONS = 32
 _SMALLEST_STEP = 1e-9
 _ROUNDS = 200
 # Local minimisers nearer to each other than this are one [rad].
@@ -33,11 +34,12 @@ def width(robot: RigidRobot, directions: ArrayLike) -> Array:
     return np.asarray(supports.max(axis=0).sum(axis=0))
 
 
+@lru_cache(maxsize=64)
 def narrowest_directions(robot: RigidRobot) -> Array:
     """Directions (m, n) in the base frame of the local minima of the robot's width.
 
     One of each pair ±v, the narrowest first. In 2-D they are all of them, to rounding; in 3-D
-    those that a descent from 200 directions and the parts' axes finds.
+    those that a descent from 32 directions and the parts' axes finds.
     """
     found = _planar(robot) if robot.dimension == 2 else _spatial(robot)
     return found[np.argsort(width(robot, found), kind="stable")]

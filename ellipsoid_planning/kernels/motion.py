@@ -50,7 +50,10 @@ from .validity import in_bounds, is_rotation
 SMALL_ROTATION = 2e-4
 # Below this cosine of half the angle, rounding decides which way OMPL turns.
 HALF_TURN = 1e-9
-_BUDGET = 1_000_000
+# Where a motion's workspace tells how many proofs a pair may take before it is refused.
+BUDGET = 14
+MOTION = 15
+_MOST_PROOFS = 1e6
 _STACK = 128
 
 
@@ -140,7 +143,7 @@ def _pair_is_free(obstacles, j, parts, i, motion, required, placed, stack):
         value, ux, uy, uz, lam = separation(obstacles, j, placed, 0, lam, required, AIM)
         lam = min(max(lam, 1e-9), 1.0 - 1e-9)
         count += 1
-        if not value > required or count > _BUDGET or high - low < 1e-14:
+        if not value > required or count > motion[BUDGET] or high - low < 1e-14:
             return -count
         slope, bend = _parabola(motion, placed, rx, ry, rz, ux, uy, uz)
         half = 0.5 * (high - low)
@@ -186,7 +189,7 @@ def _stays_in_arena(scene, arenas, a, parts, i, motion, clearance, way, placed, 
     while depth > 0:
         depth -= 1
         low, high, first, last = stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3]
-        if not min(first, last) >= 0.0 or count > _BUDGET or high - low < 1e-14:
+        if not min(first, last) >= 0.0 or count > motion[BUDGET] or high - low < 1e-14:
             return -count
         if min(first, last) >= bulge * (high - low) ** 2:
             continue
@@ -299,7 +302,7 @@ def prove_motion(scene, first, last, clearance, motion, placed, stack):
     """Prove the motion between two poses (7,) at ``clearance``.
 
     Returns the number of proofs it took (≥ 1), or a negative number if it was refused. The
-    workspaces have shapes (14,), (1, PLACED) and (128, 4).
+    workspaces are those of :func:`motion_workspaces`.
     """
     for end in (first, last):
         if not (
@@ -336,7 +339,9 @@ def prove_motion(scene, first, last, clearance, motion, placed, stack):
 @kernel
 def motion_workspaces():
     """Fresh workspaces for :func:`prove_motion`: (motion, placed, stack)."""
-    return np.empty(14), np.empty((1, PLACED)), np.empty((_STACK, 4))
+    motion = np.empty(MOTION)
+    motion[BUDGET] = _MOST_PROOFS
+    return motion, np.empty((1, PLACED)), np.empty((_STACK, 4))
 
 
 @kernel

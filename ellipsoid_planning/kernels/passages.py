@@ -11,7 +11,7 @@ from .centring import centre, robot_reach, step_length
 from .compile import inlined, kernel
 from .contact_model import GAP, GRADIENT, contact_model, difference, moved, smallest_gap
 from .layout import CLEARANCE
-from .motion import SMALL_ROTATION, prove_motion
+from .motion import BUDGET, SMALL_ROTATION, prove_motion
 
 # How far following has come (PROGRESS[STATE]).
 NEW = 0.0
@@ -26,9 +26,13 @@ SIZE = 1
 TRAVELLED = 2
 # How many more steps are taken before a straight one is tried again.
 BENT = 3
-PROGRESS = 4
+# The gap at the last pose; 0 if unknown.
+LAST_GAP = 4
+PROGRESS = 5
 
 _CENTRING = 12
+# Proofs that a step may take of one pair; shorter steps take fewer.
+_PROOFS = 2000.0
 _FIRST_CENTRING = 60
 _SECANTS = 16
 # To which share of the gap robots are centred.
@@ -60,8 +64,9 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
         direction[m] /= length
     here, ahead = path[0], work.ahead
     gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
-    if gap >= wide:
-        progress[STATE] = OPEN
+    if gap >= wide or gap <= 0.0:
+        # The narrowest place leaves even less room than this one.
+        progress[STATE] = OPEN if gap >= wide else CLOSED
         return
     size = -0.2 * reach if slope > 0.0 else 0.2 * reach
     low, high, low_slope, high_slope = -math.inf, math.inf, 0.0, 0.0
@@ -92,7 +97,7 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
         moved(here, ahead, inverse_reach, here)
         place = target
         gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
-        if gap >= wide:
+        if gap >= wide or gap <= 0.0:
             break
     if gap > 0.0:
         gap, slope = centre(
@@ -176,13 +181,14 @@ def _next_pose(scene, here, size, direction, turns, within, wide, steps, work):
 
 @kernel
 def follow(
-    scene, progress, direction, turns, within, wide, longest, path, count, limit, work, motion
+    scene, progress, direction, turns, within, wide, longest, path, count, pairs, work, motion
 ):
     """Follow a passage from its pose ``path[count − 1]`` along ``direction`` (6,) for a while.
 
-    ``path`` (≥ limit, 7) receives poses joined by proved motions, until there are ``limit`` or
-    ``progress`` (PROGRESS,) says that the passage is OPEN (the smallest gap, looked at up to
-    ``within``, is ``wide``) or BLOCKED (nothing more is proved, or longer than ``longest``).
+    ``path`` (m, 7) receives poses joined by proved motions, until it is full, about ``pairs`` pairs
+    of bodies were looked at, or ``progress`` (PROGRESS,) says that the passage is OPEN (the
+    smallest gap, looked at up to ``within``, is ``wide``) or BLOCKED (nothing more is proved, or
+    longer than ``longest``).
     At first its state is NEW: then ``path[0]`` is moved to the narrowest place near it before
     anything is followed, and the passage is CLOSED if that leaves no gap. Returns the number of
     poses.
@@ -190,12 +196,14 @@ def follow(
     reach = robot_reach(scene)
     inverse_reach = 1.0 / reach if turns else 0.0
     workspace, placed, stack = motion
+    workspace[BUDGET] = _PROOFS
     if progress[STATE] == NEW:
         progress[SIZE] = reach
         _begin(scene, progress, direction, turns, within, wide, path, work)
         return count
     ahead, next_pose, slide = work.ahead, work.next_pose, work.slide
-    while progress[STATE] == FOLLOWING and count < limit:
+    until = work.pairs[0] + pairs
+    while progress[STATE] == FOLLOWING and count < path.shape[0] and work.pairs[0] < until:
         size, here = progress[SIZE], path[count - 1]
         proved, gap, length = False, 0.0, 0.0
         straight = progress[BENT] <= 0.0
@@ -216,7 +224,8 @@ def follow(
         if not proved:
             progress[SIZE] = 0.4 * size
             progress[BENT] -= 1.0
-            if progress[SIZE] < _SHORTEST * reach:
+            # A step shorter than the gap would be proved if it went anywhere.
+            if progress[SIZE] < max(_SHORTEST * reach, 0.2 * progress[LAST_GAP]):
                 progress[STATE] = BLOCKED
             continue
         for m in range(7):
@@ -225,6 +234,7 @@ def follow(
             direction[m] = ahead[m] / length
         count += 1
         progress[TRAVELLED] += length
+        progress[LAST_GAP] = gap
         progress[BENT] -= 1.0
         progress[SIZE] = min(2.0 * size, reach)
         if gap >= wide:

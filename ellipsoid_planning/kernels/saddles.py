@@ -12,13 +12,10 @@ import math
 from .compile import inlined, kernel
 from .layout import (
     BODY_CENTRE,
-    BODY_EXTENT,
     BODY_RADIUS,
     PART_RADIUS,
     PLACED_CENTRE,
-    PLACED_EXTENT,
 )
-from .linear import norm
 from .separation import CONVERGE, separation
 from .simplex import minimise
 
@@ -95,16 +92,3 @@ def saddle(obstacles, parts, placed, pairs, count, size, point, normals, work):
         for m in range(3):
             normals[k, m] = -here[k, 1 + m]
     return gap, found
-
-
-@kernel
-def boxes_apart(obstacles, placed, first_part, first_body, second_part, second_body):
-    """A lower bound of the distance of two C-obstacles, by their bounding boxes."""
-    total = 0.0
-    for m in range(3):
-        centre = obstacles[first_body, BODY_CENTRE + m] - placed[first_part, PLACED_CENTRE + m]
-        centre -= obstacles[second_body, BODY_CENTRE + m] - placed[second_part, PLACED_CENTRE + m]
-        extent = obstacles[first_body, BODY_EXTENT + m] + placed[first_part, PLACED_EXTENT + m]
-        extent += obstacles[second_body, BODY_EXTENT + m] + placed[second_part, PLACED_EXTENT + m]
-        total += max(abs(centre) - extent, 0.0) ** 2
-    return math.sqrt(total)

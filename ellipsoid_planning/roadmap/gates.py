@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +22,8 @@ Array = NDArray[np.float64]
 # Directions in which walls are looked for, in the plane and in space.
 _HEADINGS = 64
 _SPREAD = 128
+# Looking along all of them takes as long as looking at so many pairs of bodies.
+_WALL_PAIRS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +32,7 @@ class Gate:
 
     Attributes:
         point: base position (3,).
-        gap: distance of the robot there from each of the bodies that bound it.
+        gap: distance of the robot there from each of the bodies that bound it; about, at a wall.
         normals: unit vectors (2 or 3, 3) from those bodies to the robot.
     """
 
@@ -82,23 +83,53 @@ class GateFinder:
         self._parts, self._placed = parts, placed
         self._workspace = workspace
 
-    def gates(self, bodies: list[int]) -> Iterator[Gate | None]:
-        """Gates between the obstacles with these indices; None where a combination has none."""
+    def gates(self, bodies: list[int], first: Array, last: Array) -> Iterator[Gate | None]:
+        """Gates between the obstacles with these indices; None where a combination has none.
+
+        Those on the way from the point ``first`` (3,) to ``last`` (3,) come first, as far as
+        bounding boxes tell.
+        """
         pairs = [(i, j) for j in bodies for i in range(len(self._parts))]
-        near = [
-            (a, b) for a, b in combinations(range(len(pairs)), 2) if self._near(pairs[a], pairs[b])
-        ]
+        if not pairs:
+            return
         for pair in pairs:
             yield from self._at_walls(*pair)
-        for a, b in near:
-            yield self._gate([pairs[a], pairs[b]])
+        low, high = self._boxes(pairs)
+        inner, outer = np.maximum(low[:, None], low[None]), np.minimum(high[:, None], high[None])
+        apart = np.linalg.norm(np.maximum(inner - outer, 0.0), axis=2)
+        near = np.triu(apart < 2.0 * self.widest, 1)
+        between = 0.5 * (inner + outer)
+        index = np.argwhere(near)
+        yield from self._combinations(pairs, index, between[index[:, 0], index[:, 1]], first, last)
         if self._dimension == 2:
             return
-        joined = set(near)
-        for a, b in near:
-            for c in range(b + 1, len(pairs)):
-                if (a, c) in joined and (b, c) in joined:
-                    yield self._gate([pairs[a], pairs[b], pairs[c]])
+        triples = np.array(
+            [(a, b, c) for a, b in index for c in np.flatnonzero(near[a] & near[b])],
+            dtype=np.int64,
+        ).reshape(-1, 3)
+        a, b, c = triples.T
+        points = (between[a, b] + between[b, c] + between[a, c]) / 3.0
+        yield from self._combinations(pairs, triples, points, first, last)
+
+    def _boxes(self, pairs: list[tuple[int, int]]) -> tuple[Array, Array]:
+        """Corners (m, 3), (m, 3) of the boxes of C-obstacles."""
+        part, body = np.array(pairs).T
+        centre = self._obstacles[body, :3] - self._placed[part, :3]
+        extent = self._obstacles[body, layout.BODY_EXTENT : layout.BODY_EXTENT + 3]
+        extent = extent + self._placed[part, layout.PLACED_EXTENT : layout.PLACED_EXTENT + 3]
+        return centre - extent, centre + extent
+
+    def _combinations(
+        self,
+        pairs: list[tuple[int, int]],
+        index: NDArray[np.int64],
+        points: Array,
+        first: Array,
+        last: Array,
+    ) -> Iterator[Gate | None]:
+        way = np.linalg.norm(points - first, axis=1) + np.linalg.norm(points - last, axis=1)
+        for k in np.argsort(way, kind="stable"):
+            yield self._gate([pairs[m] for m in index[k]])
 
     def _at_walls(self, part: int, body: int) -> Iterator[Gate | None]:
         """Gates between an obstacle and the arenas, about where their normals are parallel.
@@ -118,17 +149,15 @@ class GateFinder:
             changes = np.sum(higher != np.roll(higher, 1, axis=1), axis=1)
             # All round higher: a local minimum. Higher, lower, higher, lower: a saddle.
             for k in np.flatnonzero((changes >= 4) | higher.all(axis=1)):
-                if 0.0 < room[k] < 2.0 * self.widest:
+                # Directions are few: at the gate itself there may be more room.
+                if -self.widest < room[k] < 2.0 * self.widest:
                     # Half-way between the obstacle and the wall.
                     point = _farthest(obstacle, u[k]) + 0.5 * room[k] * u[k]
                     point += part_matrix @ part_matrix.T @ u[k] / np.linalg.norm(part_matrix.T @ u[k])
                     point -= self._placed[part, :3]
                     yield Gate(point, 0.5 * float(room[k]), np.array([u[k], -u[k]]))
+            self._workspace.pairs[0] += _WALL_PAIRS
             yield None
-
-    def _near(self, first: tuple[int, int], second: tuple[int, int]) -> bool:
-        apart = saddles.boxes_apart(self._obstacles, self._placed, *first, *second)
-        return bool(apart < 2.0 * self.widest)
 
     def _gate(self, pairs: list[tuple[int, int]]) -> Gate | None:
         rows = np.array(pairs, dtype=np.int64)

@@ -100,7 +100,10 @@ class HighwayRoadmap:
         for attempt in self._attempts(np.vstack([begin, end])):
             level = self._level(*attempt, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
-            status, path = level.solve(begin, end, inflation, self._weight, should_stop)
+            last_axis = attempt[1] == self._axes - 1
+            status, path = level.solve(
+                begin, end, inflation, self._weight, should_stop, last_axis
+            )
             if status == roadmap_tables.SOLVED:
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)

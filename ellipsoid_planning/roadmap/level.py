@@ -24,8 +24,10 @@ from ellipsoid_planning.roadmap.tables import (
 Array = NDArray[np.float64]
 
 # Steps of the search between two looks for passages, at first and at most.
-_FIRST_TURN = 64
+_FIRST_TURN = 32
 _LONGEST_TURN = 1024
+# Turns that are given to passages when the grid is exhausted, if other grids will be searched.
+_PATIENCE = 2
 # How long a call of the kernel should take at most [s].
 _BURST_SECONDS = 3e-3
 
@@ -68,8 +70,11 @@ class Level:
         inflation: float,
         metric_weight: float,
         should_stop: Callable[[], bool],
+        thorough: bool = True,
     ) -> tuple[int, Array]:
         """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
+
+        When the grid is exhausted, passages are looked for once more, to the end if ``thorough``.
 
         The status is kernels.roadmap's SOLVED, EXHAUSTED or, when told to stop, SEARCHING; there
         are no poses unless SOLVED.
@@ -80,7 +85,7 @@ class Level:
         status = roadmap.begin(
             self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
         )
-        turn = _FIRST_TURN
+        turn, exhausted = _FIRST_TURN, 0
         while True:
             status = self._search(goal_rows, inflation, metric_weight, turn, should_stop)
             if status == roadmap_tables.SOLVED or should_stop():
@@ -91,8 +96,10 @@ class Level:
             self._take_in()
             counters = self.tables.counters
             new = counters[roadmap_tables.ENDS] > counters[roadmap_tables.OFFERED]
-            if status == roadmap_tables.EXHAUSTED and not (more or new):
-                break
+            if status == roadmap_tables.EXHAUSTED and not new:
+                exhausted += 1
+                if not more or (exhausted > _PATIENCE and not thorough):
+                    break
             turn = min(2 * turn, _LONGEST_TURN)
         if status != roadmap_tables.SOLVED:
             return status, np.empty((0, 7))

@@ -24,12 +24,17 @@ Array = NDArray[np.float64]
 _WITHIN = 0.5
 _WIDE = 0.25
 _LONGEST = 16.0
-# Poses that one call of the kernel adds at most, so that it takes a few milliseconds at most.
+# Room for the poses of a passage, at first, and pairs of bodies that one call of the kernel looks
+# at, so that it takes about half a millisecond.
 _POSES = 16
+_PAIRS_PER_CALL = 200
 # Passages whose ends are this near to each other, in units of the reach, count as one.
 _SAME = 0.05
-# Pairs of bodies that are looked at while the search takes a step, about.
-_PAIRS_PER_STEP = 8
+# Pairs of bodies that are looked at while the search takes a step, about, and at first.
+_PAIRS_PER_STEP = 3
+_FIRST_PAIRS = 300
+# What each piece of work costs besides.
+_PAIRS_PER_PIECE = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +65,7 @@ class PassageFinder:
         self.seeds_closed = 0
         self._work: Iterator[None] = iter(())
         self._begun = False
+        self._credit = _FIRST_PAIRS
         self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
         self._reach = float(centring.robot_reach(cspace.scene))
 
@@ -82,11 +88,16 @@ class PassageFinder:
 
         Returns whether there is anything left to do.
         """
-        known, end = len(self.found), self._pairs() + _PAIRS_PER_STEP * steps
-        for _ in self._work:
-            if len(self.found) > known or self._pairs() > end or should_stop():
-                return True
-        return False
+        self._credit += _PAIRS_PER_STEP * steps
+        known = len(self.found)
+        while self._credit > 0:
+            before = self._pairs()
+            if next(self._work, False) is False:
+                return False
+            self._credit -= self._pairs() - before + _PAIRS_PER_PIECE
+            if len(self.found) > known or should_stop():
+                break
+        return True
 
     def _pairs(self) -> int:
         return int(self._kernel[0].pairs[0])
@@ -103,7 +114,7 @@ class PassageFinder:
         middle = seed.pose.reshape(1, 7).copy()
         if seed.centred:
             state = np.zeros(passages.PROGRESS)
-            self._follow(state, seed.across.copy(), middle, 1, 1)
+            self._follow(state, seed.across.copy(), middle, 1)
             yield
             if state[passages.STATE] != passages.FOLLOWING:
                 self.seeds_closed += state[passages.STATE] == passages.CLOSED
@@ -120,8 +131,7 @@ class PassageFinder:
             while state[passages.STATE] == passages.FOLLOWING:
                 if count == len(path):
                     path = np.concatenate([path, np.empty_like(path)])
-                limit = min(count + _POSES, len(path))
-                count = self._follow(state, direction, path, count, limit)
+                count = self._follow(state, direction, path, count)
                 yield
             halves.append(path[:count])
         poses = np.vstack([halves[-1][::-1], halves[0][1:]]) if seed.centred else halves[0]
@@ -129,9 +139,7 @@ class PassageFinder:
             self.found.append(Passage(poses, self._length(poses)))
             yield
 
-    def _follow(
-        self, state: Array, direction: Array, path: Array, count: int, limit: int
-    ) -> int:
+    def _follow(self, state: Array, direction: Array, path: Array, count: int) -> int:
         reach = self._reach
         return int(
             passages.follow(
@@ -144,7 +152,7 @@ class PassageFinder:
                 _LONGEST * reach,
                 path,
                 count,
-                limit,
+                _PAIRS_PER_CALL,
                 *self._kernel,
             )
         )

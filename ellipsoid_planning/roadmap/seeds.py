@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.fitting import narrowest_directions
+from ellipsoid_planning.cspace.poses import rotation_quaternion
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import centring, contact_model, layout, linear, validity
 from ellipsoid_planning.roadmap.gates import Gate, GateFinder, probe
+from ellipsoid_planning.robots.rigid import RigidRobot
 
 Array = NDArray[np.float64]
 
@@ -19,6 +23,11 @@ _SAMPLES = 15
 _LEAST_TURN = 0.5
 # Obstacles among which the gates of one query are looked for.
 _BODIES = 24
+# Gates wider than this are no narrow places for a robot that does not turn, in units of its reach.
+_WIDEST = 0.25
+# Directions along which the robot is narrow that are tried, and turns about a gate's normal.
+_FITTING = 3
+_SPINS = (0.0, 0.5 * math.pi, 0.25 * math.pi, 0.75 * math.pi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,23 +107,21 @@ def _at_gates(
 ) -> Iterator[Seed | None]:
     """Gates by the length of the way through them, each at one orientation after the other."""
     reach = centring.robot_reach(cspace.scene)
-    finder = GateFinder(cspace, *probe(cspace), reach, workspace)
-    found: list[tuple[float, int, Gate]] = []
-    for gate in finder.gates(_bodies_near(cspace, first[:3], last[:3])):
+    widest = reach if cspace.rotates else _WIDEST * reach
+    finder = GateFinder(cspace, *probe(cspace), widest, workspace)
+    later: list[Iterator[Seed]] = []
+    for gate in finder.gates(_bodies_near(cspace, first[:3], last[:3]), first[:3], last[:3]):
         yield None
-        if gate is not None and cspace_has_room(cspace, gate):
-            way = np.linalg.norm(gate.point - first[:3]) + np.linalg.norm(last[:3] - gate.point)
-            found.append((float(way), len(found), gate))
-    found.sort()
-    rounds = [_gate_seeds(cspace, gate, first, last) for _, _, gate in found]
-    while rounds:
-        left = []
-        for seeds in rounds:
-            seed = next(seeds, None)
-            if seed is not None:
-                left.append(seeds)
-                yield seed
-        rounds = left
+        if gate is not None and _has_room(cspace, gate, first[3:]):
+            seeds = _gate_seeds(cspace, gate, first, last)
+            yield next(seeds, None)
+            later.append(seeds)
+    while later:
+        seeds = later.pop(0)
+        seed = next(seeds, None)
+        if seed is not None:
+            later.append(seeds)
+            yield seed
 
 
 def _bodies_near(cspace: CSpace, first: Array, last: Array) -> list[int]:
@@ -128,14 +135,14 @@ def _bodies_near(cspace: CSpace, first: Array, last: Array) -> list[int]:
     return [int(j) for j in np.argsort(away, kind="stable")[:_BODIES]]
 
 
-def cspace_has_room(cspace: CSpace, gate: Gate) -> bool:
-    """Whether the point of a gate lies in bounds, in every arena and outside every obstacle."""
+def _has_room(cspace: CSpace, gate: Gate, orientation: Array) -> bool:
+    """Whether the point of a gate is free: for the robot, or if it turns, for a point."""
     n = cspace.dimension
+    if not cspace.rotates:
+        return bool(validity.configuration_is_free(cspace.scene, *gate.point, *orientation))
     point = gate.point[:n]
-    if cspace.rotates:
-        inside = all(arena.contains(point) for arena in cspace.world.arenas)
-        return inside and not any(body.contains(point) for body in cspace.world.obstacles)
-    return True
+    inside = gate.gap <= 0.0 or all(arena.contains(point) for arena in cspace.world.arenas)
+    return inside and not any(body.contains(point) for body in cspace.world.obstacles)
 
 
 def _along(gate: Gate, first: Array, last: Array, dimension: int) -> Array:
@@ -159,10 +166,43 @@ def _gate_seeds(cspace: CSpace, gate: Gate, first: Array, last: Array) -> Iterat
     if not cspace.rotates:
         yield Seed(np.concatenate([gate.point, first[3:]]), across)
         return
-    for quaternion in (first[3:], last[3:]):
+    for quaternion in (first[3:], last[3:], *_fitting_quaternions(cspace, gate.normals[0], across)):
         rotation = np.array(linear.rotation_matrix(*quaternion)).reshape(3, 3)
         base = gate.point - rotation @ _middle(cspace)
         yield Seed(np.concatenate([base, quaternion]), across)
+
+
+def _fitting_quaternions(cspace: CSpace, normal: Array, across: Array) -> Iterator[Array]:
+    """Orientations at which the robot is narrowest along ``normal`` (3,), in space at some spins.
+
+    Of the spins, those come first that point one of the robot's axes along ``across``.
+    """
+    n = cspace.dimension
+    directions = narrowest_directions(cspace.robot)[:_FITTING]
+    for spin in _SPINS if n == 3 else (0.0,):
+        for v in directions:
+            for sign in (1.0, -1.0):
+                if n == 2:
+                    yaw = math.atan2(normal[1], normal[0]) - math.atan2(sign * v[1], sign * v[0])
+                    yield np.array([0.0, 0.0, math.sin(0.5 * yaw), math.cos(0.5 * yaw)])
+                else:
+                    yield _frame_quaternion(cspace.robot, sign * v, normal, across[:3], spin)
+
+
+def _frame_quaternion(
+    robot: RigidRobot, v: Array, normal: Array, along: Array, spin: float
+) -> Array:
+    """Quaternion of a rotation that takes v to ``normal`` and the longest axis across v along."""
+    axes = np.vstack([part.rotation.T * part.semi_axes[:, None] for part in robot.parts])
+    across = axes - np.outer(axes @ v, v)
+    first = across[np.argmax(np.linalg.norm(across, axis=1))]
+    first = first / np.linalg.norm(first)
+    along = along - (along @ normal) * normal
+    along = along / np.linalg.norm(along)
+    own = np.column_stack([v, first, np.cross(v, first)])
+    turned = np.cos(spin) * along + np.sin(spin) * np.cross(normal, along)
+    target = np.column_stack([normal, turned, np.cross(normal, turned)])
+    return rotation_quaternion(target @ own.T)
 
 
 def _middle(cspace: CSpace) -> Array:

@@ -33,6 +33,8 @@ from .simplex import MOST_ACTIVE, minimise
 
 # Largest proximal parameter s, in units of the robot's reach.
 _LONGEST_STEPS = 100.0
+# Pairs whose directions are remembered.
+_REMEMBERED = 256
 
 
 class Workspace(NamedTuple):
@@ -51,6 +53,8 @@ class Workspace(NamedTuple):
     slide: NDArray[np.float64]
     next_pose: NDArray[np.float64]
     pairs: NDArray[np.int64]
+    keys: NDArray[np.int64]
+    known: NDArray[np.float64]
 
 
 @kernel
@@ -70,6 +74,8 @@ def new_workspace(scene):
         np.empty(6),
         np.empty(7),
         np.zeros(1, dtype=np.int64),
+        np.zeros(_REMEMBERED, dtype=np.int64) - 1,
+        np.empty((_REMEMBERED, 3)),
     )
 
 
@@ -129,7 +135,7 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
     inverse_reach = 1.0 / reach if turns else 0.0
     placed, trial, step = work.placed, work.trial, work.step
     here, there = work.first, work.second
-    count = contact_model(scene, placed, pose, within, inverse_reach, here, work.pairs)
+    count = contact_model(scene, placed, pose, within, inverse_reach, here, work.pairs, work.keys, work.known)
     _put_across(here, count, across)
     gap = smallest_gap(here, count, within)
     size, longest, slope = reach, 0.5 * reach, 0.0
@@ -150,7 +156,7 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
         moved(pose, step, inverse_reach, trial)
         for k in range(3):
             trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
-        more = contact_model(scene, placed, trial, within, inverse_reach, there, work.pairs)
+        more = contact_model(scene, placed, trial, within, inverse_reach, there, work.pairs, work.keys, work.known)
         value = smallest_gap(there, more, within)
         # A gain that falls short of the promise by a share tells the curvature, and that the best
         # size: s/(2·share).

@@ -7,9 +7,11 @@ of one pair, clearance taken off, and its gradient with respect to such steps.
 
 import math
 
+import numpy as np
+
 from .broad_phase import next_overlap
 from .compile import inlined, kernel
-from .containment import extent_in_arena
+from .containment import extent_in_arena, inverse_size
 from .layout import (
     BODY_CENTRE,
     BODY_INVERSE,
@@ -28,7 +30,7 @@ from .layout import (
 )
 from .linear import cross, norm, product, times, transposed_times
 from .placement import place
-from .separation import CONVERGE, separation
+from .separation import CONVERGE, polish, separation
 
 GAP = 0
 GRADIENT = 1
@@ -110,6 +112,17 @@ def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, invers
     They are local maxima of |w| over the part, looked for from the tips of its axes.
     """
     clearance = scene[CLEARANCE]
+    wx, wy, wz = times(
+        arenas,
+        a,
+        BODY_INVERSE,
+        placed[i, PLACED_CENTRE] - arenas[a, BODY_CENTRE],
+        placed[i, PLACED_CENTRE + 1] - arenas[a, BODY_CENTRE + 1],
+        placed[i, PLACED_CENTRE + 2] - arenas[a, BODY_CENTRE + 2],
+    )
+    size = norm(placed[i, PLACED_EXTENT], placed[i, PLACED_EXTENT + 1], placed[i, PLACED_EXTENT + 2])
+    if norm(wx, wy, wz) + (size + within + clearance) * inverse_size(arenas, a, BODY_INVERSE) < 1.0:
+        return count
     g, ux, uy, uz = extent_in_arena(arenas, a, placed, i, scene[SCALE], BODY_INVERSE, True)
     length = norm(ux, uy, uz)
     fx, fy, fz = placed[i, PLACED_CENTRE], placed[i, PLACED_CENTRE + 1], placed[i, PLACED_CENTRE + 2]
@@ -148,12 +161,37 @@ def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, invers
     return count
 
 
+@inlined
+def _gap(obstacles, j, parts, placed, i, keys, known):
+    """Gap of a pair with its direction, sought from where it was found last."""
+    key = j * placed.shape[0] + i
+    row = key % keys.shape[0]
+    if keys[row] == key:
+        gap, ux, uy, uz = polish(
+            obstacles,
+            j,
+            placed,
+            i,
+            known[row, 0],
+            known[row, 1],
+            known[row, 2],
+            math.inf,
+            CONVERGE,
+        )
+    else:
+        lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
+        gap, ux, uy, uz, _ = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)
+    keys[row] = key
+    known[row, 0], known[row, 1], known[row, 2] = ux, uy, uz
+    return gap, ux, uy, uz
+
+
 @kernel
-def contact_model(scene, placed, pose, within, inverse_reach, model, work):
+def contact_model(scene, placed, pose, within, inverse_reach, model, work, keys, known):
     """Fill ``model`` (CAPACITY, MODEL) with every pair whose gap is below ``within``: their count.
 
     ``inverse_reach`` is 1/ρ, or 0 for a robot that does not turn. ``work`` (1,) counts the pairs
-    looked at. Gaps are negative where bodies
+    looked at; ``keys`` and ``known`` remember directions of gaps. Gaps are negative where bodies
     meet. Those of arenas are first-order estimates, exact at contact.
     """
     place(scene, pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], placed)
@@ -179,8 +217,7 @@ def contact_model(scene, placed, pose, within, inverse_reach, model, work):
         while node >= 0:
             work[0] += 1
             j = int(tree[node, NODE_OBSTACLE])
-            lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
-            gap, ux, uy, uz, _ = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)
+            gap, ux, uy, uz = _gap(obstacles, j, parts, placed, i, keys, known)
             gap -= clearance
             if gap < within:
                 px, py, pz = _farthest(placed, i, -ux, -uy, -uz)
@@ -213,6 +250,16 @@ def moved(pose, step, inverse_reach, out):
     length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     for k in range(4):
         out[3 + k] = q[k] / length
+
+
+@kernel
+def samples_along(first, step, inverse_reach, out):
+    """Write poses (m, 7) evenly along ``step`` (6,) from ``first``, both ends excluded, to ``out``."""
+    part = np.empty(6)
+    for k in range(out.shape[0]):
+        for m in range(6):
+            part[m] = step[m] * (k + 1.0) / (out.shape[0] + 1.0)
+        moved(first, part, inverse_reach, out[k])
 
 
 @kernel

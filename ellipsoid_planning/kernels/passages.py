@@ -117,7 +117,7 @@ def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
     would have to turn), ``slide`` is ``direction`` itself.
     """
     model, normals = work.first, work.second
-    count = contact_model(scene, work.placed, pose, within, inverse_reach, model, work.pairs)
+    count = contact_model(scene, work.placed, pose, within, inverse_reach, model, work.pairs, work.keys, work.known)
     gap = smallest_gap(model, count, within)
     rank = 0
     for k in range(count):

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 _HEADINGS = 64
 _SPREAD = 128
 # Looking along all of them takes as long as looking at so many pairs of bodies.
-_WALL_PAIRS = 60
+_WALL_PAIRS = 200
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.poses import configurations_from_poses
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import centring, motion, passages
-from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.seeds import Seed, seeds_of_query
 
 Array = NDArray[np.float64]
@@ -27,19 +25,19 @@ _LONGEST = 16.0
 # Room for the poses of a passage, at first, and pairs of bodies that one call of the kernel looks
 # at, so that it takes about half a millisecond.
 _POSES = 16
-_PAIRS_PER_CALL = 200
+_PAIRS_PER_CALL = 600
 # Passages whose ends are this near to each other, in units of the reach, count as one.
 _SAME = 0.05
 # Pairs of bodies that are looked at while the search takes a step, about, and at first.
-_PAIRS_PER_STEP = 3
-_FIRST_PAIRS = 300
+_PAIRS_PER_STEP = 6
+_FIRST_PAIRS = 1000
 # What each piece of work costs besides.
-_PAIRS_PER_PIECE = 40
+_PAIRS_PER_PIECE = 80
 
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """Poses (m, 7) joined by proved motions, ``length`` long in the roadmap's metric."""
+    """Poses (m, 7) joined by proved motions, ``length`` long."""
 
     poses: Array
     length: float
@@ -81,6 +79,7 @@ class PassageFinder:
     def begin(self, starts: Array, goals: Array) -> None:
         """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
         self._begun = True
+        self._kernel[0].keys[:] = -1
         self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
 
     def advance(self, steps: int, should_stop: Callable[[], bool]) -> bool:
@@ -167,5 +166,7 @@ class PassageFinder:
         return False
 
     def _length(self, poses: Array) -> float:
-        robot = self.cspace.robot
-        return path_length(robot, configurations_from_poses(robot, poses))
+        """Length in OMPL's metric."""
+        moved = np.linalg.norm(poses[1:, :3] - poses[:-1, :3], axis=1)
+        cosines = np.abs(np.einsum("mk,mk->m", poses[1:, 3:], poses[:-1, 3:]))
+        return float(np.sum(moved) + np.sum(np.arccos(np.minimum(cosines, 1.0))))

@@ -63,15 +63,15 @@ def seeds_of_query(
 
 def _on_the_way(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
     """The middles of the blocked stretches of the direct motion, then its ends."""
+    reach = centring.robot_reach(cspace.scene)
     step = np.empty(6)
-    contact_model.difference(first, last, centring.robot_reach(cspace.scene), step)
+    contact_model.difference(first, last, reach, step)
     if not cspace.rotates:
         step[3:] = 0.0
     if not step.any():
         return
     poses = np.empty((_SAMPLES, 7))
-    for k, s in enumerate(np.linspace(0.0, 1.0, _SAMPLES + 2)[1:-1]):
-        contact_model.moved(first, s * step, 1.0 / centring.robot_reach(cspace.scene), poses[k])
+    contact_model.samples_along(first, step, 1.0 / reach, poses)
     free = np.empty(_SAMPLES, dtype=np.bool_)
     validity.are_free(cspace.scene, poses, free)
     edges = np.flatnonzero(np.diff(np.concatenate([[True], free, [True]]).astype(int)))

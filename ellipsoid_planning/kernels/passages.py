@@ -70,22 +70,27 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
         return
     size = -0.2 * reach if slope > 0.0 else 0.2 * reach
     low, high, low_slope, high_slope = -math.inf, math.inf, 0.0, 0.0
+    low_gap, high_gap, low_tangent, high_tangent = gap, gap, slope, slope
     place, side = 0.0, 0
     for _ in range(_SECANTS):
         # Illinois: an end that stays twice counts half, or the other would creep.
         if slope < 0.0:
             high_slope *= 0.5 if side < 0 else 1.0
             low, low_slope, side = place, slope, -1
+            low_gap, low_tangent = gap, slope
         else:
             low_slope *= 0.5 if side > 0 else 1.0
             high, high_slope, side = place, slope, 1
+            high_gap, high_tangent = gap, slope
         if low > -math.inf and high < math.inf:
             # The secant's root, kept away from the ends.
             share = min(max(low_slope / (low_slope - high_slope), 0.02), 0.98)
             target = low + share * (high - low)
-            # Between the two places the gap falls by no more than this.
-            fall = min(abs(low_slope), abs(high_slope)) * (high - low)
-            if high - low < 1e-7 * reach or (gap > 0.0 and fall < _FALL * gap):
+            # Where the tangents of both ends meet is about the least that the gap falls to.
+            meet = high_gap - low_gap + low_tangent * low - high_tangent * high
+            meet /= min(low_tangent - high_tangent, -1e-300)
+            least = low_gap + low_tangent * (meet - low)
+            if high - low < 1e-7 * reach or gap - least < _FALL * gap:
                 break
         else:
             target = place + size

@@ -31,8 +31,11 @@ _SAME = 0.05
 # Pairs of bodies that are looked at while the search takes a step, about, and at first.
 _PAIRS_PER_STEP = 6
 _FIRST_PAIRS = 1000
+# Later seeds are less likely to help: after so many the work gets less.
+_LIKELY = 24
+_PAIRS_LATER = 2
 # What each piece of work costs besides.
-_PAIRS_PER_PIECE = 80
+_PAIRS_PER_PIECE = 150
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +67,7 @@ class PassageFinder:
         self._work: Iterator[None] = iter(())
         self._begun = False
         self._credit = _FIRST_PAIRS
+        self._tried_before = 0
         self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
         self._reach = float(centring.robot_reach(cspace.scene))
 
@@ -79,6 +83,7 @@ class PassageFinder:
     def begin(self, starts: Array, goals: Array) -> None:
         """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
         self._begun = True
+        self._tried_before = self.seeds_tried
         self._kernel[0].keys[:] = -1
         self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
 
@@ -87,7 +92,8 @@ class PassageFinder:
 
         Returns whether there is anything left to do.
         """
-        self._credit += _PAIRS_PER_STEP * steps
+        likely = self.seeds_tried - self._tried_before < _LIKELY
+        self._credit += (_PAIRS_PER_STEP if likely else _PAIRS_LATER) * steps
         known = len(self.found)
         while self._credit > 0:
             before = self._pairs()

@@ -137,11 +137,12 @@ def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: Request) -> No
     si = setup.getSpaceInformation()
     state = si.allocState()
     write_configuration(state, request.scenario.start, request.cspace)
+    own = isinstance(request.entry, OwnPlanner)
+    if own and hasattr(planner, "warm_up"):
+        planner.warm_up()
     si.isValid(state)
     si.checkMotion(state, state)
-    if isinstance(request.entry, OwnPlanner):
-        if hasattr(planner, "warm_up"):
-            planner.warm_up()
+    if own:
         return
     sampler = si.allocValidStateSampler()
     sampler.sampleNear(state, state, 1e-3)

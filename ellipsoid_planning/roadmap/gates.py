@@ -111,6 +111,11 @@ class GateFinder:
         points = (between[a, b] + between[b, c] + between[a, c]) / 3.0
         yield from self._combinations(pairs, triples, points, first, last)
 
+    def compile_kernels(self) -> None:
+        """Call the kernel that gates are found with, at worst on a body that is not there."""
+        if len(self._obstacles):
+            self._gate([(0, 0)])
+
     def _boxes(self, pairs: list[tuple[int, int]]) -> tuple[Array, Array]:
         """Corners (m, 3), (m, 3) of the boxes of C-obstacles."""
         part, body = np.array(pairs).T

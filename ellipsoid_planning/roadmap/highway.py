@@ -18,6 +18,7 @@ from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
+from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels, compiling_aside
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
 from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
@@ -268,6 +269,11 @@ class HighwayRoadmap:
 
         For a planner made for this alone: it lays out the first level, and adds two ends to it.
         """
+        with compiling_aside():
+            self._compile_search()
+        compile_passage_kernels(self.cspace)
+
+    def _compile_search(self) -> None:
         robot, world = self.cspace.robot, self.cspace.world
         ends = np.zeros((2, robot.configuration_size))
         ends[:, : robot.dimension] = [world.low, world.high]

@@ -1,0 +1,89 @@
+"""Compiling the kernels that look for passages, in a process of their own if there are none yet.
+
+They share little with those of the search, so that a machine's first run, which compiles both,
+takes little more than half as long on two cores. The cache on disk brings them together.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import numpy as np
+
+from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.kernels import centring, contact_model, motion, passages
+from ellipsoid_planning.kernels.compile import CACHE_FOLDER
+from ellipsoid_planning.roadmap.gates import GateFinder, probe
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.world import World
+
+# Stands in the cache's folder while and after somebody compiles these kernels.
+_MARK = "passages"
+_PROGRAM = "from ellipsoid_planning.roadmap.passage_kernels import main; main()"
+# No compilation takes as long [s].
+_LONGEST = 600.0
+
+
+def compile_passage_kernels(cspace: CSpace) -> None:
+    """Call everything that looking for passages calls, without finding any."""
+    scene = cspace.scene
+    workspace = centring.new_workspace(scene)
+    pose = np.zeros((1, 7))
+    pose[0, 6] = 1.0
+    step, progress = np.zeros(6), np.zeros(passages.PROGRESS)
+    progress[passages.STATE] = passages.BLOCKED
+    passages.follow(
+        scene,
+        progress,
+        step,
+        cspace.rotates,
+        1.0,
+        1.0,
+        1.0,
+        pose,
+        1,
+        1,
+        workspace,
+        motion.motion_workspaces(),
+    )
+    contact_model.samples_along(pose[0], step, 1.0, np.empty((1, 7)))
+    contact_model.difference(pose[0], pose[0], 1.0, step)
+    contact_model.moved(pose[0], step, 1.0, pose[0])
+    GateFinder(cspace, *probe(cspace), 1.0, workspace).compile_kernels()
+
+
+@contextmanager
+def compiling_aside() -> Iterator[None]:
+    """Compile the kernels in a process of its own while the block runs, unless they are there.
+
+    If no process can be started, nothing happens: they are compiled when they are called.
+    """
+    process = None
+    with suppress(OSError):
+        (CACHE_FOLDER / _MARK).touch(exist_ok=False)
+        process = subprocess.Popen(
+            [sys.executable, "-c", _PROGRAM],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    try:
+        yield
+        if process is not None:
+            process.wait(_LONGEST)
+    except BaseException:
+        if process is not None:
+            process.kill()
+            (CACHE_FOLDER / _MARK).unlink(missing_ok=True)
+        raise
+
+
+def main() -> None:
+    """What the process does: compile for a scene of the simplest kind."""
+    ball = Ellipsoid.from_semi_axes([1.0, 1.0, 1.0])
+    robot, world = RigidRobot((ball,)), World([-9.0] * 3, [9.0] * 3, (ball, ball))
+    compile_passage_kernels(CSpace(world, robot))

@@ -75,7 +75,6 @@ class Level:
         """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
 
         When the grid is exhausted, passages are looked for once more, to the end if ``thorough``.
-
         The status is kernels.roadmap's SOLVED, EXHAUSTED or, when told to stop, SEARCHING; there
         are no poses unless SOLVED.
         """
@@ -139,6 +138,8 @@ class Level:
 
     def _take_in(self) -> None:
         """Enter the passages that were found since the last call."""
+        if self._taken_in == len(self.passages.found):
+            return
         for passage in self.passages.found[self._taken_in :]:
             rows = self._rows(passage.poses[[0, -1]], joins=False)
             self.tables = with_passage(

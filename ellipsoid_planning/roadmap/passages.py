@@ -30,7 +30,9 @@ _PAIRS_PER_CALL = 600
 _SAME = 0.05
 # Pairs of bodies that are looked at while the search takes a step, about, and at first.
 _PAIRS_PER_STEP = 6
-_FIRST_PAIRS = 1000
+_FIRST_PAIRS = 150
+# But a passage on the direct way, once found, is followed at once, by so many at most.
+_OVERDRAFT = -3000
 # Later seeds are less likely to help: after so many the work gets less.
 _LIKELY = 24
 _PAIRS_LATER = 2
@@ -68,6 +70,7 @@ class PassageFinder:
         self._begun = False
         self._credit = _FIRST_PAIRS
         self._tried_before = 0
+        self._promising = False
         self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
         self._reach = float(centring.robot_reach(cspace.scene))
 
@@ -95,7 +98,7 @@ class PassageFinder:
         likely = self.seeds_tried - self._tried_before < _LIKELY
         self._credit += (_PAIRS_PER_STEP if likely else _PAIRS_LATER) * steps
         known = len(self.found)
-        while self._credit > 0:
+        while self._credit > (_OVERDRAFT if self._promising else 0):
             before = self._pairs()
             if next(self._work, False) is False:
                 return False
@@ -126,6 +129,7 @@ class PassageFinder:
                 return
             if self._known(middle[0]):
                 return
+        self._promising = self.seeds_tried == self._tried_before + 1
         halves = []
         for sign in (1.0, -1.0) if seed.centred else (1.0,):
             state = np.zeros(passages.PROGRESS)
@@ -140,6 +144,7 @@ class PassageFinder:
                 yield
             halves.append(path[:count])
         poses = np.vstack([halves[-1][::-1], halves[0][1:]]) if seed.centred else halves[0]
+        self._promising = False
         if len(poses) > 1:
             self.found.append(Passage(poses, self._length(poses)))
             yield

@@ -21,7 +21,6 @@ from .compile import inlined, kernel
 from .contact_model import (
     ALONG,
     CAPACITY,
-    GAP,
     GRADIENT,
     MODEL,
     contact_model,
@@ -91,7 +90,7 @@ def robot_reach(scene):
 
 @inlined
 def _put_across(model, count, across):
-    """Split the gradients of a model: along the direction ``across`` (column ALONG), and the rest."""
+    """Split the gradients of a model: the part along ``across`` (column ALONG), and the rest."""
     for k in range(count):
         along = 0.0
         for m in range(6):
@@ -135,7 +134,9 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
     inverse_reach = 1.0 / reach if turns else 0.0
     placed, trial, step = work.placed, work.trial, work.step
     here, there = work.first, work.second
-    count = contact_model(scene, placed, pose, within, inverse_reach, here, work.pairs, work.keys, work.known)
+    count = contact_model(
+        scene, placed, pose, within, inverse_reach, here, work.pairs, work.keys, work.known
+    )
     _put_across(here, count, across)
     gap = smallest_gap(here, count, within)
     size, longest, slope = reach, 0.5 * reach, 0.0
@@ -156,7 +157,9 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
         moved(pose, step, inverse_reach, trial)
         for k in range(3):
             trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
-        more = contact_model(scene, placed, trial, within, inverse_reach, there, work.pairs, work.keys, work.known)
+        more = contact_model(
+            scene, placed, trial, within, inverse_reach, there, work.pairs, work.keys, work.known
+        )
         value = smallest_gap(there, more, within)
         # A gain that falls short of the promise by a share tells the curvature, and that the best
         # size: s/(2·share).

@@ -79,9 +79,7 @@ def _farthest(placed, i, ux, uy, uz):
 
 
 @inlined
-def _enter_wall(
-    model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach
-):
+def _enter_wall(model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach):
     """Add the row of the gap between the point p of the robot and the wall of arena ``a``."""
     wx, wy, wz = times(
         arenas,
@@ -120,17 +118,21 @@ def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, invers
         placed[i, PLACED_CENTRE + 1] - arenas[a, BODY_CENTRE + 1],
         placed[i, PLACED_CENTRE + 2] - arenas[a, BODY_CENTRE + 2],
     )
-    size = norm(placed[i, PLACED_EXTENT], placed[i, PLACED_EXTENT + 1], placed[i, PLACED_EXTENT + 2])
+    size = norm(
+        placed[i, PLACED_EXTENT], placed[i, PLACED_EXTENT + 1], placed[i, PLACED_EXTENT + 2]
+    )
     if norm(wx, wy, wz) + (size + within + clearance) * inverse_size(arenas, a, BODY_INVERSE) < 1.0:
         return count
-    g, ux, uy, uz = extent_in_arena(arenas, a, placed, i, scene[SCALE], BODY_INVERSE, True)
+    _, ux, uy, uz = extent_in_arena(arenas, a, placed, i, scene[SCALE], BODY_INVERSE, True)
     length = norm(ux, uy, uz)
-    fx, fy, fz = placed[i, PLACED_CENTRE], placed[i, PLACED_CENTRE + 1], placed[i, PLACED_CENTRE + 2]
+    fx, fy, fz = (
+        placed[i, PLACED_CENTRE],
+        placed[i, PLACED_CENTRE + 1],
+        placed[i, PLACED_CENTRE + 2],
+    )
     if length > 0.0:
         fx, fy, fz = _farthest(placed, i, ux / length, uy / length, uz / length)
-    count = _enter_wall(
-        model, count, arenas, a, fx, fy, fz, pose, within, clearance, inverse_reach
-    )
+    count = _enter_wall(model, count, arenas, a, fx, fy, fz, pose, within, clearance, inverse_reach)
     for k in range(6):
         sign, axis = 1.0 - 2.0 * (k % 2), k // 2
         ax = placed[i, PLACED_MATRIX + axis]
@@ -254,7 +256,7 @@ def moved(pose, step, inverse_reach, out):
 
 @kernel
 def samples_along(first, step, inverse_reach, out):
-    """Write poses (m, 7) evenly along ``step`` (6,) from ``first``, both ends excluded, to ``out``."""
+    """Write poses evenly along ``step`` (6,) from ``first``, without the ends, to ``out`` (m, 7)."""
     part = np.empty(6)
     for k in range(out.shape[0]):
         for m in range(6):

@@ -101,7 +101,9 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
             ahead[m] = (target - place) * direction[m]
         moved(here, ahead, inverse_reach, here)
         place = target
-        gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
+        gap, slope = centre(
+            scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work
+        )
         if gap >= wide or gap <= 0.0:
             break
     if gap > 0.0:
@@ -122,7 +124,9 @@ def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
     would have to turn), ``slide`` is ``direction`` itself.
     """
     model, normals = work.first, work.second
-    count = contact_model(scene, work.placed, pose, within, inverse_reach, model, work.pairs, work.keys, work.known)
+    count = contact_model(
+        scene, work.placed, pose, within, inverse_reach, model, work.pairs, work.keys, work.known
+    )
     gap = smallest_gap(model, count, within)
     rank = 0
     for k in range(count):

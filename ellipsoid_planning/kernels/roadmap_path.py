@@ -3,8 +3,8 @@
 import numpy as np
 
 from .compile import inlined, kernel
-from .roadmap import is_proved
 from .roadmap_metric import write_pose
+from .roadmap_proofs import is_proved
 from .roadmap_tables import (
     END_FIRST,
     END_LAST,

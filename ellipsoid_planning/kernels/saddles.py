@@ -11,7 +11,6 @@ import math
 
 from .compile import inlined, kernel
 from .layout import (
-    BODY_CENTRE,
     BODY_RADIUS,
     PART_RADIUS,
     PLACED_CENTRE,

@@ -102,7 +102,9 @@ def minimise(rows, count, size, matrix, active, weights, step):
             for m in range(6):
                 value += rows[active[a], 1 + m] * step[m]
             highest = max(highest, value)
-        if used == MOST_ACTIVE or highest - lowest <= 1e-11 * (abs(highest) + abs(lowest) + 1e-6 * size):
+        if used == MOST_ACTIVE or highest - lowest <= 1e-11 * (
+            abs(highest) + abs(lowest) + 1e-6 * size
+        ):
             break
         known = False
         for a in range(used):

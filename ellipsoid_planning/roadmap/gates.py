@@ -158,7 +158,8 @@ class GateFinder:
                 if -self.widest < room[k] < 2.0 * self.widest:
                     # Half-way between the obstacle and the wall.
                     point = _farthest(obstacle, u[k]) + 0.5 * room[k] * u[k]
-                    point += part_matrix @ part_matrix.T @ u[k] / np.linalg.norm(part_matrix.T @ u[k])
+                    image = part_matrix.T @ u[k]
+                    point += part_matrix @ image / np.linalg.norm(image)
                     point -= self._placed[part, :3]
                     yield Gate(point, 0.5 * float(room[k]), np.array([u[k], -u[k]]))
             self._workspace.pairs[0] += _WALL_PAIRS

@@ -18,9 +18,9 @@ from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
+from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
 from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels, compiling_aside
 from ellipsoid_planning.roadmap.passages import PassageFinder
-from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
 from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
 from ellipsoid_planning.roadmap.shorten import shorten
 
@@ -102,9 +102,7 @@ class HighwayRoadmap:
             level = self._level(*attempt, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
             last_axis = attempt[1] == self._axes - 1
-            status, path = level.solve(
-                begin, end, inflation, self._weight, should_stop, last_axis
-            )
+            status, path = level.solve(begin, end, inflation, self._weight, should_stop, last_axis)
             if status == roadmap_tables.SOLVED:
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)

@@ -65,7 +65,7 @@ def compiling_aside() -> Iterator[None]:
     process = None
     with suppress(OSError):
         (CACHE_FOLDER / _MARK).touch(exist_ok=False)
-        process = subprocess.Popen(
+        process = subprocess.Popen(  # noqa: S603 (our own program)
             [sys.executable, "-c", _PROGRAM],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -85,5 +85,5 @@ def compiling_aside() -> Iterator[None]:
 def main() -> None:
     """What the process does: compile for a scene of the simplest kind."""
     ball = Ellipsoid.from_semi_axes([1.0, 1.0, 1.0])
-    robot, world = RigidRobot((ball,)), World([-9.0] * 3, [9.0] * 3, (ball, ball))
+    robot, world = RigidRobot((ball,)), World(np.full(3, -9.0), np.full(3, 9.0), (ball, ball))
     compile_passage_kernels(CSpace(world, robot))

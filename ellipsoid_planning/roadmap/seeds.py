@@ -130,7 +130,11 @@ def _bodies_near(cspace: CSpace, first: Array, last: Array) -> list[int]:
     centres = rows[:, :3]
     step = last - first
     square = float(step @ step)
-    s = np.clip((centres - first) @ step / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(rows))
+    s = (
+        np.clip((centres - first) @ step / square, 0.0, 1.0)
+        if square > 0.0
+        else np.zeros(len(rows))
+    )
     away = np.linalg.norm(centres - first - s[:, None] * step, axis=1) - rows[:, layout.BODY_RADIUS]
     return [int(j) for j in np.argsort(away, kind="stable")[:_BODIES]]
 

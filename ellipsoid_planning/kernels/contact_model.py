@@ -256,7 +256,7 @@ def moved(pose, step, inverse_reach, out):
 
 @kernel
 def samples_along(first, step, inverse_reach, out):
-    """Write poses evenly along ``step`` (6,) from ``first``, without the ends, to ``out`` (m, 7)."""
+    """Write poses evenly along ``step`` (6,) from ``first``, ends excluded, to ``out`` (m, 7)."""
     part = np.empty(6)
     for k in range(out.shape[0]):
         for m in range(6):

@@ -84,6 +84,8 @@ class ClearanceTester:
         upper = np.full(len(configurations), np.inf)
         meetings: list[Meeting] = []
         positions, rotations = placements(self._robot, configurations)
+        if not np.all(np.isfinite(needed)) and self._obstacles.names:
+            needed = np.minimum(needed, self._at_most(positions, rotations))
         for part, name in enumerate(self._parts.names):
             centres = positions + rotations @ self._parts.centres[part]
             matrices = rotations @ self._parts.matrices[part]
@@ -96,6 +98,16 @@ class ClearanceTester:
                 meetings += [Meeting(k, name, body, depth, row) for k, body, depth, row in found]
         return Clearances(lower, upper, tuple(meetings))
 
+    def _at_most(self, positions: Array, rotations: Array) -> Array:
+        """Bounds (k,) of clearances from above: the distances of the bodies' centres."""
+        nearest = np.full(len(positions), np.inf)
+        for part in range(len(self._parts.names)):
+            centres = positions + rotations @ self._parts.centres[part]
+            for row, centre in enumerate(centres):
+                away = np.linalg.norm(self._obstacles.centres - centre, axis=1)
+                nearest[row] = min(nearest[row], float(np.min(away)))
+        return nearest
+
     def _obstacle_distances(
         self, part: int, centres: Array, matrices: Array, needed: Array, lower: Array
     ) -> tuple[NDArray[np.intp], Array, Array, list[tuple[str, str, float, int]]]:
@@ -103,11 +115,20 @@ class ClearanceTester:
         obstacles = self._obstacles
         if not obstacles.names:
             return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), []
-        away = np.linalg.norm(obstacles.centres - centres[:, None], axis=2)
-        spheres = away - obstacles.radii - self._parts.radii[part]
+        # Those far from all of the configurations first, so that large worlds cost no more.
+        middle = np.mean(centres, axis=0)
+        spread = float(np.max(np.linalg.norm(centres - middle, axis=1)))
+        far = np.linalg.norm(obstacles.centres - middle, axis=1) - spread
+        far -= obstacles.radii + self._parts.radii[part]
+        kept = np.flatnonzero(far <= np.max(needed))
+        np.minimum(lower, np.min(np.delete(far, kept), initial=np.inf), out=lower)
+        away = np.linalg.norm(obstacles.centres[kept] - centres[:, None], axis=2)
+        spheres = away - obstacles.radii[kept] - self._parts.radii[part]
         close = spheres <= needed[:, None]
-        np.minimum(lower, np.min(np.where(close, np.inf, spheres), axis=1), out=lower)
+        nearest = np.min(np.where(close, np.inf, spheres), axis=1, initial=np.inf)
+        np.minimum(lower, nearest, out=lower)
         rows, others = np.nonzero(close)
+        others = kept[others]
         low, high = np.zeros(len(rows)), np.zeros(len(rows))
         meet = np.zeros(len(rows), dtype=bool)
         for i in range(0, len(rows), _LARGEST_BATCH):

@@ -22,9 +22,14 @@ _HEADINGS = 720
 _BISECTIONS = 60
 _DIRECTIONS = 32
 _SMALLEST_STEP = 1e-9
-_ROUNDS = 200
+_ROUNDS = 25
+_MORE_ROUNDS = 120
+# How steps grow and shrink, and how their sides turn from one round to the next [rad].
+_LONGER, _SHORTER = 1.5, 0.7
+_GOLDEN = 0.25 * math.pi * (math.sqrt(5.0) - 1.0) / 2.0
 # Local minimisers nearer to each other than this are one [rad].
-_SAME = 1e-4
+_SAME = 1e-3
+_ROUGHLY_SAME = 0.05
 
 
 def width(robot: RigidRobot, directions: ArrayLike) -> Array:
@@ -61,6 +66,8 @@ def _slope(robot: RigidRobot, angles: Array) -> Array:
 def _planar(robot: RigidRobot) -> Array:
     angles = np.linspace(0.0, math.pi, _HEADINGS + 1)
     slopes = _slope(robot, angles)
+    # Half a turn on it is the same direction, up to rounding.
+    slopes[-1] = slopes[0]
     rising = np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0))
     if len(rising) == 0:
         # A disc: every direction is as good as any other.
@@ -83,34 +90,41 @@ def _spread(count: int) -> Array:
 
 def _spatial(robot: RigidRobot) -> Array:
     axes = np.vstack([part.rotation.T for part in robot.parts])
-    v = np.vstack([axes, _spread(_DIRECTIONS)])
-    values, step = width(robot, v), np.full(len(v), 0.2)
-    turns = np.linspace(0.0, 2.0 * math.pi, 8, endpoint=False)
-    for _ in range(_ROUNDS):
-        if step.max() < _SMALLEST_STEP:
-            break
+    v = _descended(robot, np.vstack([axes, _spread(_DIRECTIONS)]), 0.2, _ROUNDS)
+    v = _distinct(v[np.argsort(width(robot, v), kind="stable")], _ROUGHLY_SAME)
+    v = _descended(robot, v, 0.1, _MORE_ROUNDS)
+    return _distinct(v[np.argsort(width(robot, v), kind="stable")], _SAME)
+
+
+def _descended(robot: RigidRobot, v: Array, step: float, rounds: int) -> Array:
+    """Directions (m, 3) moved downhill, by steps to eight sides that turn from round to round.
+
+    Valleys are narrow, along creases and between the axes of long parts: none of a few fixed
+    steps would lead down them.
+    """
+    values, steps = width(robot, v), np.full(len(v), step)
+    sides = np.linspace(0.0, 2.0 * math.pi, 8, endpoint=False)
+    rows = np.arange(len(v))
+    for k in range(rounds):
+        turns = sides + _GOLDEN * k
         first = np.cross(v, np.eye(3)[np.argmin(np.abs(v), axis=1)])
         first /= np.linalg.norm(first, axis=1, keepdims=True)
         second = np.cross(v, first)
-        trials = (
-            v[:, None]
-            + step[:, None, None] * np.cos(turns)[:, None] * first[:, None]
-            + step[:, None, None] * np.sin(turns)[:, None] * second[:, None]
-        )
+        aside = np.cos(turns)[:, None] * first[:, None] + np.sin(turns)[:, None] * second[:, None]
+        trials = v[:, None] + steps[:, None, None] * aside
         trials /= np.linalg.norm(trials, axis=2, keepdims=True)
         widths = width(robot, trials.reshape(-1, 3)).reshape(len(v), -1)
         best = np.argmin(widths, axis=1)
-        rows = np.arange(len(v))
         better = widths[rows, best] < values
         v = np.where(better[:, None], trials[rows, best], v)
         values = np.where(better, widths[rows, best], values)
-        step = np.where(better, step, 0.5 * step)
-    return _distinct(v[np.argsort(values, kind="stable")])
+        steps = np.clip(np.where(better, _LONGER * steps, _SHORTER * steps), _SMALLEST_STEP, step)
+    return v
 
 
-def _distinct(directions: Array) -> Array:
+def _distinct(directions: Array, same: float) -> Array:
     kept: list[Array] = []
     for v in directions:
-        if all(1.0 - abs(float(v @ w)) > 0.5 * _SAME**2 for w in kept):
+        if all(1.0 - abs(float(v @ w)) > 0.5 * same**2 for w in kept):
             kept.append(v)
     return np.array(kept)

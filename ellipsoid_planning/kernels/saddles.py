@@ -19,6 +19,9 @@ from .separation import CONVERGE, separation
 from .simplex import minimise
 
 _STEPS = 40
+# By how much gaps may differ at a saddle, in units of the gap or of the bodies' size: between flat
+# bodies the last digits take long.
+_EVEN = 1e-3
 # A row of pairs: part, body.
 PART_OF = 0
 BODY_OF = 1
@@ -87,7 +90,7 @@ def saddle(obstacles, parts, placed, pairs, count, size, point, normals, work):
             proximal *= 0.25
     found = gap > 0.0
     for k in range(count):
-        found = found and -here[k, 0] > (1.0 - 1e-3) * gap
+        found = found and gap + here[k, 0] < _EVEN * max(gap, size)
         for m in range(3):
             normals[k, m] = -here[k, 1 + m]
     return gap, found

@@ -11,18 +11,21 @@ import math
 
 from .compile import inlined, kernel
 
-# Rows in use at most: the dimension of steps and one more.
-MOST_ACTIVE = 7
+# Rows in use at most: as many as can be independent, the dimension of steps and one more, and
+# another that has come in before one of them leaves.
+MOST_ACTIVE = 8
 _ROUNDS = 40
 _RIDGE = 1e-13
 
 
 @inlined
 def _factorise(matrix, count, rows, active, size):
-    """Cholesky factor of s∇g·∇g + 1 over the active rows, in the lower half of ``matrix``."""
+    """Cholesky factor of s(∇g·∇g + 1) over the active rows, in the lower half of ``matrix``."""
     for a in range(count):
         for b in range(a + 1):
-            total = 1.0
+            # As the weights' sum is given, a constant changes nothing; without it, rows whose
+            # gradients depend on each other would be singular.
+            total = size
             for m in range(6):
                 total += size * rows[active[a], 1 + m] * rows[active[b], 1 + m]
             if a == b:
@@ -30,7 +33,7 @@ def _factorise(matrix, count, rows, active, size):
             for m in range(b):
                 total -= matrix[a, m] * matrix[b, m]
             if a == b:
-                matrix[a, a] = math.sqrt(max(total, 1e-16))
+                matrix[a, a] = math.sqrt(max(total, 1e-16 * size))
             else:
                 matrix[a, b] = total / matrix[b, b]
 

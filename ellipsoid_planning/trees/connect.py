@@ -16,6 +16,8 @@ from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.tree_nearest import insert
 from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.roadmap.highway import SOLVED, TIMEOUT, Outcome
+from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels
+from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.shorten import shorten
 from ellipsoid_planning.trees.parameters import TreeParameters
 from ellipsoid_planning.trees.tables import edges_of, grown, new_trees, path_of
@@ -26,6 +28,9 @@ Array = NDArray[np.float64]
 _FIRST_BURST = 16
 _LONGEST_BURST = 1024
 _BURST_SECONDS = 3e-3
+# Steps before passages are looked for; each look takes as much work, and the next comes after
+# twice as many.
+_FIRST_LOOK = 64
 # Rows of random numbers drawn at once.
 _BLOCK = 256
 
@@ -33,7 +38,8 @@ _BLOCK = 256
 class FreeIntervalRRTConnect:
     """Two trees of proved motions that grow towards free samples, and towards each other.
 
-    The direct motion comes first. A query that was stopped goes on where it was when it is asked
+    The direct motion comes first. Poses in narrow passages, found at saddle points of clearance,
+    are tried as samples as well. A query that was stopped goes on where it was when it is asked
     again; another query starts new trees.
 
     Attributes:
@@ -58,6 +64,8 @@ class FreeIntervalRRTConnect:
         self._random = np.random.default_rng(self.parameters.seed)
         self._numbers = np.empty((0, tree.ROW))
         self._trees = new_trees()
+        self._passages = PassageFinder(self.cspace)
+        self._planted_at = 0
         self._query: tuple[Array, Array] | None = None
         self._direct = 0
 
@@ -108,6 +116,7 @@ class FreeIntervalRRTConnect:
         counters = self._trees.counters
         return {
             "direct_motions": self._direct,
+            "passages": len(self._passages.found),
             "steps": int(counters[tree_tables.STEPS]),
             "blocked_draws": int(counters[tree_tables.BLOCKED_DRAWS]),
             "start_vertices": int(counters[0]),
@@ -135,6 +144,8 @@ class FreeIntervalRRTConnect:
         self.cspace.is_valid(configurations_from_poses(self.cspace.robot, rest)[0])
         self._plant(rest, rest)
         self._grow(_gates(None), 0)
+        if self.parameters.gate_share > 0.0:
+            compile_passage_kernels(self.cspace)
 
     def _direct_motion(self, starts: Array, goals: Array) -> Array | None:
         """The first proved motion (2, 7) from one of the starts to one of the goals, or None."""
@@ -147,6 +158,8 @@ class FreeIntervalRRTConnect:
     def _plant(self, starts: Array, goals: Array) -> None:
         """Begin new trees: every start is a root of the first, every goal one of the second."""
         self._query = (starts, goals)
+        self._planted_at = int(self._trees.counters[tree_tables.STEPS])
+        self._passages.begin(starts, goals)
         self._trees.counters[:2] = 0
         self._trees = grown(self._trees, max(len(starts), len(goals)))
         for side, roots in enumerate((starts, goals)):
@@ -155,10 +168,20 @@ class FreeIntervalRRTConnect:
 
     def _search(self, gates: Array, should_stop: Callable[[], bool]) -> Array | None:
         """Grow the trees until they meet: the path (m, 7), or None if told to stop."""
-        steps = _FIRST_BURST
+        steps, looked = _FIRST_BURST, _FIRST_LOOK
+        gates = np.vstack([gates, *(passage.poses for passage in self._passages.found)])
         while True:
             began = time.perf_counter()
-            if self._grow(gates, steps) == tree_tables.SOLVED:
+            done = int(self._trees.counters[tree_tables.STEPS]) - self._planted_at
+            if done >= looked:
+                # By counts of steps and not by the clock, so that a query repeats exactly.
+                known = len(self._passages.found)
+                if self.parameters.gate_share > 0.0:
+                    self._passages.advance(looked, should_stop)
+                found = self._passages.found[known:]
+                gates = np.vstack([gates, *(passage.poses for passage in found)])
+                looked *= 2
+            if self._grow(gates, min(steps, looked - done)) == tree_tables.SOLVED:
                 path = path_of(self._trees)
                 if self._is_proved(path):
                     return path

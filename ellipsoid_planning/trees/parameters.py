@@ -22,7 +22,8 @@ class TreeParameters:
             or longer than the one before.
         uniform: fraction of the samples that are uniform on free space; the others favour places
             that are narrow along a line.
-        gate_share: fraction of the samples that are poses given from outside, if there are any.
+        gate_share: fraction of the samples that are poses in narrow passages, found at saddle
+            points of clearance, or given from outside; 0 looks for none.
         anytime: improve the path until the time is over.
         seed: of the samples, and of the improvement of paths.
         metric_weight: length that a turn of one radian counts for, in the scenario's unit; half

@@ -67,6 +67,10 @@ class PlannerError(EllipsoidPlanningError):
     """An unknown planner, an unknown parameter, or a parameter out of its range."""
 
 
+class RoadmapError(EllipsoidPlanningError):
+    """A roadmap's file that cannot be read or written, or that does not belong to the scene."""
+
+
 class ResultError(EllipsoidPlanningError):
     """A result file that cannot be read, or that contradicts itself."""
 

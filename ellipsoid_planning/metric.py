@@ -42,3 +42,13 @@ def _turns(robot: RigidRobot, path: NDArray[np.float64]) -> NDArray[np.float64]:
     products = np.abs(np.sum(path[:-1, 3:] * path[1:, 3:], axis=1))
     apart = products <= 1.0 - SAME_QUATERNION
     return np.where(apart, np.arccos(np.minimum(products, 1.0)), 0.0)
+
+
+def turn_length(robot: RigidRobot) -> float:
+    """The length that planners let a turn of one radian count for by default.
+
+    Half the robot's reach, which is how far its points move at most in such a turn.
+    """
+    return 0.5 * max(
+        float(np.linalg.norm(part.centre) + part.semi_axes.max()) for part in robot.parts
+    )

@@ -13,13 +13,28 @@ from ompl import base as ob
 
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import PlannerError
-from ellipsoid_planning.roadmap.highway import SOLVED, Outcome
+from ellipsoid_planning.outcome import SOLVED, Outcome
 
 from . import bindings
 from .spaces import state_access
 from .validity import EllipsoidValidityChecker
 
 Statuses = ob.PlannerStatus.PlannerStatusType
+
+
+def cspace_of(si: ob.SpaceInformation, planner: str = "the planner") -> CSpace:
+    """The C-space behind the validity checker of ``si``.
+
+    Raises:
+        PlannerError: the checker is not the plug-in's; ``planner`` says who needs it.
+    """
+    checker = si.getStateValidityChecker()
+    if not isinstance(checker, EllipsoidValidityChecker):
+        raise PlannerError(
+            f"{planner} needs the plug-in's EllipsoidValidityChecker in its SpaceInformation;"
+            " install it with planners.setup.install(si, cspace)"
+        )
+    return checker.cspace
 
 
 class CorePlanner(ob.Planner):
@@ -40,8 +55,8 @@ class CorePlanner(ob.Planner):
     PARAMETER_CLASS: ClassVar[type]
     """The dataclass that checks them."""
 
-    # The planners whose kernels this process has loaded.
-    _warm: ClassVar[set[type]] = set()
+    # What `kernels_in_use` told whenever this process has loaded kernels.
+    _warm: ClassVar[set[tuple[Any, ...]]] = set()
 
     def __init__(self, si: ob.SpaceInformation) -> None:
         """Create a planner; the scene is looked up in ``si`` when it solves."""
@@ -109,13 +124,7 @@ class CorePlanner(ob.Planner):
         return self.PARAMETER_CLASS(**{name: getattr(self, name) for name in self.PARAMETERS})
 
     def _cspace(self) -> CSpace:
-        checker = self.getSpaceInformation().getStateValidityChecker()
-        if not isinstance(checker, EllipsoidValidityChecker):
-            raise PlannerError(
-                f"{self.getName()} needs the plug-in's EllipsoidValidityChecker in its"
-                " SpaceInformation; install it with planners.setup.install(si, cspace)"
-            )
-        return checker.cspace
+        return cspace_of(self.getSpaceInformation(), self.getName())
 
     def setup(self) -> None:
         """Check the parameters.
@@ -125,13 +134,17 @@ class CorePlanner(ob.Planner):
         """
         super().setup()
         self.check_parameters()
-        if type(self) not in CorePlanner._warm:
+        if self.kernels_in_use() not in CorePlanner._warm:
             self.warm_up()
+
+    def kernels_in_use(self) -> tuple[Any, ...]:
+        """What tells the kernels of this planner from others': the class, unless they vary."""
+        return (type(self),)
 
     def warm_up(self) -> None:
         """Compile every kernel that a solve can call, leaving the planner as it was."""
         self.new_core(self._cspace(), self._parameters()).compile_kernels()
-        CorePlanner._warm.add(type(self))
+        CorePlanner._warm.add(self.kernels_in_use())
 
     @classmethod
     def check_values(cls, values: Mapping[str, Any]) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ompl import base as ob
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.roadmap.highway import Outcome
+from ellipsoid_planning.outcome import Outcome
 from ellipsoid_planning.trees import connect
 from ellipsoid_planning.trees.parameters import TreeParameters
 

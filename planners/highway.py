@@ -2,49 +2,33 @@
 
 from __future__ import annotations
 
-import traceback
-from collections.abc import Mapping
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from ompl import base as ob
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.outcome import Outcome
 from ellipsoid_planning.roadmap import highway
 from ellipsoid_planning.roadmap.graph import RoadmapGraph, explored_graph
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 
-from . import bindings
-from .spaces import StateAccess, state_access
-from .validity import EllipsoidValidityChecker
+from .core_planner import CorePlanner
 
-Statuses = ob.PlannerStatus.PlannerStatusType
+Array = NDArray[np.float64]
 _OPTIONAL = type(None)
 
 
-def cspace_of(si: ob.SpaceInformation) -> CSpace:
-    """The C-space behind the validity checker of ``si``.
-
-    Raises:
-        PlannerError: the checker is not the plug-in's.
-    """
-    checker = si.getStateValidityChecker()
-    if not isinstance(checker, EllipsoidValidityChecker):
-        raise PlannerError(
-            "HighwayRoadmap needs the plug-in's EllipsoidValidityChecker in its SpaceInformation;"
-            " install it with planners.setup.install(si, cspace)"
-        )
-    return checker.cspace
-
-
-class HighwayRoadmap(ob.Planner):
+class HighwayRoadmap(CorePlanner):
     """Plans on layers of free intervals; every motion of its paths is proved free.
 
     It is built from a `SpaceInformation` that has the plug-in's checker, so the class itself is a
     planner allocator. The direct motion is tried first. The roadmap is kept: later queries on the
-    same scene reuse its intervals and proofs until `clear`.
+    same scene reuse its intervals and proofs until `clear`. It can also be saved to a file, and
+    loaded for the same scene. With ``anytime`` the path is improved until the planner is stopped;
+    every better one is added to the problem definition.
 
     Parameters are plain attributes, read at every `solve`; see
     ellipsoid_planning.roadmap.parameters.RoadmapParameters for what they mean: ``layers``,
@@ -66,116 +50,63 @@ class HighwayRoadmap(ob.Planner):
         "seed": int,
         "metric_weight": (float, int, _OPTIONAL),
     }
+    PARAMETER_CLASS = RoadmapParameters
 
-    # The values of ``anytime`` whose kernels this process has loaded.
-    _warm: ClassVar[set[bool]] = set()
+    def new_core(self, cspace: CSpace, parameters: RoadmapParameters) -> highway.HighwayRoadmap:
+        """An empty roadmap."""
+        return highway.HighwayRoadmap(cspace, parameters)
 
-    def __init__(self, si: ob.SpaceInformation) -> None:
-        """Create a planner; the scene is looked up in ``si`` when it solves."""
-        super().__init__(si, "HighwayRoadmap")
-        for name, value in vars(RoadmapParameters()).items():
-            setattr(self, name, value)
-        self.error: str | None = None
-        self._roadmap: highway.HighwayRoadmap | None = None
+    def run(
+        self,
+        starts: Array,
+        goals: Array,
+        should_stop: Callable[[], bool],
+        on_path: Callable[[Array], None],
+    ) -> Outcome:
+        """Search from ``starts`` (S, d) to ``goals`` (G, d)."""
+        outcome: Outcome = self.core().solve(starts, goals, should_stop, on_path)
+        return outcome
 
-    def solve(self, ptc: ob.PlannerTerminationCondition | float) -> ob.PlannerStatus:
-        """Plan until a path is found, nothing is left to try, or ``ptc`` holds (or seconds passed).
-
-        With ``anytime`` the path is improved until ``ptc`` holds; every better one is added to
-        the problem definition. An exception ends the solve with CRASH and is kept in ``error``.
-        """
-        self.error = None
-        if isinstance(ptc, int | float):
-            ptc = bindings.stop_after(ptc)
-        try:
-            return ob.PlannerStatus(self._solve(ptc))
-        # An exception that crosses the bindings would end a whole benchmark.
-        except Exception:  # noqa: BLE001
-            self.error = traceback.format_exc()
-            return ob.PlannerStatus(Statuses.CRASH)
-
-    def _solve(self, ptc: ob.PlannerTerminationCondition) -> Any:
-        roadmap = self._current()
-        access = state_access(roadmap.cspace)
-        starts = bindings.start_configurations(self, access)
-        if len(starts) == 0:
-            return Statuses.INVALID_START
-        goals = bindings.goal_configurations(self, access)
-        if len(goals) == 0:
-            return Statuses.INVALID_GOAL
-
-        def add(path: NDArray[np.float64]) -> None:
-            self._add_path(path, access)
-
-        outcome = roadmap.solve(starts, goals, ptc, add)
-        if outcome.status == highway.SOLVED:
-            return Statuses.EXACT_SOLUTION
-        # Exhausted at the finest resolution allowed is no proof that there is no path.
-        return Statuses.TIMEOUT
-
-    def _add_path(self, path: NDArray[np.float64], access: StateAccess) -> None:
-        solution = bindings.path_from_configurations(self.getSpaceInformation(), path, access)
-        self.getProblemDefinition().addSolutionPath(solution, False, 0.0, self.getName())
-
-    def _parameters(self) -> RoadmapParameters:
-        return RoadmapParameters(**{name: getattr(self, name) for name in self.PARAMETERS})
-
-    def _current(self) -> highway.HighwayRoadmap:
-        """The roadmap of the present scene and parameters, a new one if either has changed."""
-        parameters, cspace = self._parameters(), cspace_of(self.getSpaceInformation())
-        kept = self._roadmap
-        if kept is None or kept.cspace is not cspace or kept.parameters != parameters:
-            kept = highway.HighwayRoadmap(cspace, parameters)
-            self._roadmap = kept
-        return kept
-
-    def setup(self) -> None:
-        """Lay out the first level's lines and layers, which depend on no query.
-
-        The first planner of a process also loads the kernels, or compiles them on a machine that
-        has not yet run them, which takes about half a minute.
-        """
-        super().setup()
-        if self.anytime not in HighwayRoadmap._warm:
-            self.warm_up()
-        self._current().prepare()
-
-    @classmethod
-    def check_values(cls, values: Mapping[str, Any]) -> None:
-        """Check values of parameters as far as that is possible without a scene.
-
-        Raises:
-            PlannerError: a value is out of its range.
-        """
-        RoadmapParameters(**values)
+    def kernels_in_use(self) -> tuple[Any, ...]:
+        """Improving a path takes kernels of its own."""
+        return type(self), self.anytime
 
     def check_parameters(self) -> None:
-        """Check the present parameters.
+        """Check the present parameters, and lay out the first level, which depends on no query.
 
         Raises:
             PlannerError: a value is out of its range, or there is no such axis.
         """
-        self._current().prepare()
+        self.core().prepare()
 
-    def clear(self) -> None:
-        """Forget the roadmap and the query."""
-        super().clear()
-        self._roadmap = None
+    def save_roadmap(self, path: str | Path) -> None:
+        """Write the roadmap to a file, completely or not at all; an older roadmap is replaced.
+
+        Raises:
+            RoadmapError: the file cannot be written, or is there already and no roadmap.
+            PlannerError: a parameter is out of its range.
+        """
+        self.core().save(path)
+
+    def load_roadmap(self, path: str | Path) -> None:
+        """Go on with the roadmap of a file; it answers as the one that was saved would.
+
+        What came from a file is proved again before it is given out.
+
+        Raises:
+            RoadmapError: the file cannot be read, is no roadmap or a damaged one, or belongs to
+                another world, robot or clearance, to parameters that make another roadmap, or to
+                another version of this package.
+            PlannerError: a parameter is out of its range.
+        """
+        self._core = highway.HighwayRoadmap.load(path, self._cspace(), self._parameters())
 
     def clearQuery(self) -> None:  # noqa: N802
         """Forget the query only; the roadmap is kept for the next one."""
+        # OMPL's own calls `clear`.
+        kept = self._core
         super().clearQuery()
-
-    def warm_up(self) -> None:
-        """Compile every kernel that a solve can call, leaving the planner as it was."""
-        cspace = cspace_of(self.getSpaceInformation())
-        highway.HighwayRoadmap(cspace, self._parameters()).compile_kernels()
-        HighwayRoadmap._warm.add(self.anytime)
-
-    @property
-    def statistics(self) -> dict[str, Any]:
-        """Counts since the last `clear`: levels, layers, lines, intervals, edges, expansions."""
-        return {} if self._roadmap is None else dict(self._roadmap.statistics)
+        self._core = kept
 
     def roadmap_graph(self) -> RoadmapGraph:
         """What has been explored so far as a graph whose edges are proved motions.
@@ -183,4 +114,4 @@ class HighwayRoadmap(ob.Planner):
         It stands in for OMPL's `getPlannerData`, which aborts the process when it is overridden
         in Python.
         """
-        return explored_graph(self._current())
+        return explored_graph(self.core())

@@ -79,11 +79,16 @@ def explored_graph(planner: HighwayRoadmap) -> RoadmapGraph:
     parts = [_level_graph(level, robot) for level in planner.levels]
     configurations = [np.empty((0, robot.configuration_size))]
     edges, layers = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)]
-    vertices, first_layer = 0, 0
+    count, first_layer = 0, 0
     for part, level in zip(parts, planner.levels, strict=True):
         configurations.append(part.configurations)
-        edges.append(part.edges + vertices)
+        edges.append(part.edges + count)
         layers.append(part.layers + first_layer)
-        vertices += len(part.configurations)
+        count += len(part.configurations)
         first_layer += len(level.grid.orientations)
-    return RoadmapGraph(np.vstack(configurations), np.vstack(edges), np.concatenate(layers))
+    vertices, pairs = np.vstack(configurations), np.vstack(edges)
+    if planner.loaded:
+        # Files may be wrong about what is proved.
+        first, last = vertices[pairs.T]
+        pairs = pairs[planner.cspace.are_motions_valid(first, last)]
+    return RoadmapGraph(vertices, pairs, np.concatenate(layers))

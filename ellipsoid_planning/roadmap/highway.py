@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.shortcut import shortcut
-from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.metric import path_length, turn_length
+from ellipsoid_planning.outcome import EXHAUSTED, SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
@@ -23,12 +24,10 @@ from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels, 
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
 from ellipsoid_planning.roadmap.shorten import shorten
+from ellipsoid_planning.roadmap.store import StoredRoadmap, save
+from ellipsoid_planning.roadmap.store_level import StoredLevel
 
 Array = NDArray[np.float64]
-
-SOLVED = "solved"
-EXHAUSTED = "exhausted"
-TIMEOUT = "timeout"
 
 # A finer level has this many times the lines along a side, and this many times the layers.
 _MORE_LINES = 1.6
@@ -38,24 +37,21 @@ _BETWEEN = 3
 _LOWER_INFLATIONS = (2.0, 1.5, 1.2, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """How a query ended: ``status``, and the path (m, d) if solved."""
-
-    status: str
-    path: Array | None = None
-
-
 class HighwayRoadmap:
     """A roadmap of free intervals, built where queries look and kept for later ones.
 
     The direct motion comes first. Then levels of growing resolution are searched until one has a
     path, which is proved motion by motion before it is given out.
 
+    A roadmap can be saved to a file and loaded again. What a file says is proved may be wrong, so
+    that paths are then proved once more from end to end; if one is refused, everything that came
+    from the file is forgotten.
+
     Attributes:
         cspace: what is planned in.
         parameters: see RoadmapParameters.
         levels: the levels made so far, coarsest first.
+        loaded: whether anything came from a file.
     """
 
     def __init__(self, cspace: CSpace, parameters: RoadmapParameters | None = None) -> None:
@@ -70,9 +66,11 @@ class HighwayRoadmap:
         self.passages: list[PassageFinder] = []
         self._axis = self.parameters.checked_axis(cspace.dimension)
         self._axes = cspace.dimension if self.parameters.axis is None else 1
-        self._weight = self._metric_weight()
+        chosen = self.parameters.metric_weight
+        self._weight = turn_length(cspace.robot) if chosen is None else chosen
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self.loaded = False
 
     def solve(
         self,
@@ -88,13 +86,12 @@ class HighwayRoadmap:
         nothing is left to try.
         """
         begin, end = self.cspace.poses(starts), self.cspace.poses(goals)
-        for first in begin:
-            direct = self._direct_motion(first, end)
-            if direct is not None:
-                self._direct += 1
-                return self._solved(direct, on_path)
-            if should_stop():
-                return Outcome(TIMEOUT)
+        direct = self._direct_motion(begin, end, should_stop)
+        if direct is not None:
+            self._direct += 1
+            return self._solved(direct, on_path)
+        if should_stop():
+            return Outcome(TIMEOUT)
         best: Array | None = None
         for finder in self.passages:
             finder.rest()
@@ -104,6 +101,9 @@ class HighwayRoadmap:
             last_axis = attempt[1] == self._axes - 1
             status, path = level.solve(begin, end, inflation, self._weight, should_stop, last_axis)
             if status == roadmap_tables.SOLVED:
+                if best is None and not self._holds(path):
+                    self.clear()
+                    return self.solve(starts, goals, should_stop, on_path)
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)
                 best = self._better(best, path, on_path)
@@ -125,6 +125,47 @@ class HighwayRoadmap:
         self.passages = []
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self.loaded = False
+
+    def save(self, path: str | Path) -> None:
+        """Write the roadmap to a file, completely or not at all; an older roadmap is replaced.
+
+        Raises:
+            RoadmapError: the file cannot be written, or is there already and no roadmap.
+        """
+        random = self._random.bit_generator.state
+        save(self, path, {"direct_motions": self._direct, "random": random})
+
+    @classmethod
+    def load(
+        cls, path: str | Path, cspace: CSpace, parameters: RoadmapParameters | None = None
+    ) -> HighwayRoadmap:
+        """The roadmap of a file, which answers queries as the one that was saved would.
+
+        It plans with ``parameters``, or else those that it was made with.
+
+        Raises:
+            RoadmapError: the file cannot be read, is no roadmap or a damaged one, or belongs to
+                another world, robot or clearance, to parameters that make another roadmap, or to
+                another version of this package.
+        """
+        stored = StoredRoadmap(path, cspace, parameters)
+        roadmap = cls(cspace, stored.parameters)
+        roadmap.restore(stored)
+        return roadmap
+
+    def restore(self, stored: StoredRoadmap) -> None:
+        """Replace everything computed so far by what a file holds.
+
+        Raises:
+            RoadmapError: the file is damaged.
+        """
+        self.clear()
+        stored.restore_levels(self._add_stored)
+        stored.restore_passages(self.passages)
+        stored.restore_random(self._random)
+        self._direct = stored.count("direct_motions")
+        self.loaded = True
 
     @property
     def statistics(self) -> dict[str, int]:
@@ -140,15 +181,6 @@ class HighwayRoadmap:
             for name, count in level.statistics.items():
                 total[name] = total.get(name, 0) + count
         return total
-
-    def _metric_weight(self) -> float:
-        if self.parameters.metric_weight is not None:
-            return self.parameters.metric_weight
-        reach = [
-            float(np.linalg.norm(part.centre) + part.semi_axes.max())
-            for part in self.cspace.robot.parts
-        ]
-        return 0.5 * max(reach)
 
     def _attempts(self, ends: Array) -> Iterator[tuple[int, int, Box | None]]:
         """What to try for queries between ``ends`` (m, 7), in turn: (refinement, turn, box).
@@ -183,7 +215,15 @@ class HighwayRoadmap:
                             level.grid.layer_of(quaternion)
         return level
 
-    def _new_level(self, refinement: int, axis: int, box: Box | None) -> Level:
+    def _add_stored(self, stored: StoredLevel) -> Level:
+        level = self._new_level(stored.refinement, stored.axis, stored.box, stored.orientations)
+        self.levels.append(level)
+        return level
+
+    def _new_level(
+        self, refinement: int, axis: int, box: Box | None, orientations: Array | None = None
+    ) -> Level:
+        """An empty level; its ``orientations`` (L, 4) are chosen here unless they are given."""
         dimension, given = self.cspace.dimension, self.parameters
         local = within(self.cspace, box)
         lines = given.line_count(dimension)
@@ -192,7 +232,7 @@ class HighwayRoadmap:
         columns, neighbours = grid_columns(local.world, axis, lines)
         if not self.cspace.rotates:
             orientations = np.empty((0, 4))
-        else:
+        elif orientations is None:
             count = min(round(given.layer_count(dimension) * _MORE_LAYERS**refinement), MOST_LAYERS)
             orientations = spread_orientations(dimension, count)
             if refinement > 0:
@@ -208,18 +248,32 @@ class HighwayRoadmap:
         self.passages.append(PassageFinder(cspace))
         return self.passages[-1]
 
-    def _direct_motion(self, start: Array, goals: Array) -> Array | None:
-        """The motion (2, 7) to the first goal that it is proved free to, or None."""
-        counts = np.empty(len(goals), dtype=np.int64)
-        motions_are_free(self.cspace.scene, np.tile(start, (len(goals), 1)), goals, counts)
-        reached = np.flatnonzero(counts > 0)
-        return np.vstack([start, goals[reached[0]]]) if len(reached) else None
+    def _direct_motion(
+        self, starts: Array, goals: Array, should_stop: Callable[[], bool]
+    ) -> Array | None:
+        """The first motion (2, 7) from a start to a goal that is proved free, or None."""
+        for start in starts:
+            counts = np.empty(len(goals), dtype=np.int64)
+            motions_are_free(self.cspace.scene, np.tile(start, (len(goals), 1)), goals, counts)
+            reached = np.flatnonzero(counts > 0)
+            if len(reached):
+                return np.vstack([start, goals[reached[0]]])
+            if should_stop():
+                break
+        return None
 
     def _solved(self, path: Array, on_path: Callable[[Array], None] | None) -> Outcome:
         configurations = configurations_from_poses(self.cspace.robot, path)
         if on_path is not None:
             on_path(configurations)
         return Outcome(SOLVED, configurations)
+
+    def _holds(self, path: Array) -> bool:
+        """Whether a path (m, 7) may be given out: proved as configurations, if a file led to it."""
+        if not self.loaded:
+            return True
+        rows = configurations_from_poses(self.cspace.robot, path)
+        return bool(self.cspace.are_motions_valid(rows[:-1], rows[1:]).all())
 
     def _improve(
         self,
@@ -253,7 +307,8 @@ class HighwayRoadmap:
     def _better(
         self, best: Array | None, path: Array, on_path: Callable[[Array], None] | None
     ) -> Array:
-        if best is not None and not self._length(path) < self._length(best):
+        shorter = best is None or self._length(path) < self._length(best)
+        if best is not None and not (shorter and self._holds(path)):
             return best
         self._solved(path, on_path)
         return path
@@ -281,6 +336,6 @@ class HighwayRoadmap:
         self._level(0, 0, None, poses[:1], poses[1:]).compile_kernels(poses)
         within(self.cspace, (world.low, world.low + 1e-3 * (world.high - world.low)))
         self.cspace.is_valid(ends[0])
-        self._direct_motion(poses[0], poses[:1])
+        self._direct_motion(poses[:1], poses[:1], lambda: True)
         if self.parameters.anytime:
             self._shortened(np.repeat(poses[:1], 2, axis=0))

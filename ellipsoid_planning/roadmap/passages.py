@@ -86,7 +86,7 @@ class PassageFinder:
     def begin(self, starts: Array, goals: Array) -> None:
         """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
         self._begun = True
-        self._tried_before = self.seeds_tried
+        self._credit, self._tried_before = _FIRST_PAIRS, self.seeds_tried
         self._kernel[0].keys[:] = -1
         self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
 

@@ -7,7 +7,7 @@ import numpy as np
 from ompl import base as ob
 
 from planners import bindings
-from planners.highway import cspace_of
+from planners.core_planner import cspace_of
 from planners.spaces import state_access
 
 Statuses = ob.PlannerStatus.PlannerStatusType

@@ -79,8 +79,9 @@ class OwnPlanner:
     ``PARAMETERS`` maps the names of its parameters, which are plain attributes, to their types;
     without it there are none. Optional are also the method ``check_parameters()``, which raises
     PlannerError, the method ``warm_up()``, which compiles what a solve needs, the mapping
-    ``statistics``, whose entries ``build_time`` and ``search_time`` go to a result's times, and
-    ``error``, the traceback of an exception that ended the last solve with CRASH.
+    ``statistics``, whose entries ``build_time`` and ``search_time`` go to a result's times,
+    ``error``, the traceback of an exception that ended the last solve with CRASH, and the methods
+    ``load_roadmap(path)`` and ``save_roadmap(path)``, which go together.
 
     Attributes:
         name: the class.

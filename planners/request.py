@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +13,8 @@ from numpy.typing import NDArray
 from ompl import base as ob
 from ompl import geometric as og
 
-from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.errors import PlannerError, RoadmapError
+from ellipsoid_planning.roadmap.store_format import check_target
 
 from . import bindings
 from .certify import is_certified
@@ -55,6 +58,7 @@ class Request:
     seed: int | None
     simplify: bool
     anytime: bool
+    roadmap: Path | None = None
 
 
 def checked_request(
@@ -67,11 +71,13 @@ def checked_request(
     anytime: bool = False,
     parameters: Mapping[str, Any] | None = None,
     resolution: float | None = None,
+    roadmap: str | Path | None = None,
 ) -> Request:
     """The request that these arguments of `planners.solve.plan` make.
 
     Raises:
         PlannerError: unknown planner, parameter or checker, or a combination that cannot work.
+        RoadmapError: no roadmap can be kept where ``roadmap`` says.
     """
     own = dict(scenario.planner)
     own_name = own.pop("name", DEFAULT_PLANNER)
@@ -82,6 +88,8 @@ def checked_request(
         raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
     if not time_limit > 0.0:
         raise PlannerError(f"time limit: expected a positive number of seconds, got {time_limit!r}")
+    if roadmap is not None:
+        check_roadmap_file(entry, Path(roadmap))
     values = {**(own if entry.name == own_name else {}), **(parameters or {})}
     return Request(
         scenario=scenario,
@@ -94,7 +102,25 @@ def checked_request(
         seed=seed,
         simplify=simplify,
         anytime=anytime,
+        roadmap=None if roadmap is None else Path(roadmap),
     )
+
+
+def check_roadmap_file(entry: PlannerEntry, file: Path) -> None:
+    """Check that a planner can keep its roadmap in a file.
+
+    Raises:
+        PlannerError: it keeps none.
+        RoadmapError: the folder is missing or cannot be written to, or there is something that
+            is no file.
+    """
+    if not isinstance(entry, OwnPlanner) or not hasattr(entry.load(), "load_roadmap"):
+        raise PlannerError(
+            f"roadmap: {entry.name} keeps no roadmap in a file; {DEFAULT_PLANNER} does"
+        )
+    check_target(file)
+    if not os.access(file.resolve().parent, os.W_OK):
+        raise RoadmapError(f"{file}: the folder cannot be written to; name a file in another one")
 
 
 def prepared(request: Request) -> tuple[og.SimpleSetup, ob.Planner]:
@@ -113,6 +139,8 @@ def prepared(request: Request) -> tuple[og.SimpleSetup, ob.Planner]:
     try:
         setup.setOptimizationObjective(bindings.path_length_objective(si, not request.anytime))
         planner = _allocated(request, si)
+        if request.roadmap is not None and request.roadmap.exists():
+            planner.load_roadmap(request.roadmap)
         setup.setPlanner(planner)
         _warm_up(setup, planner, request)
     except BaseException:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +55,7 @@ def plan(
     anytime: bool = False,
     parameters: Mapping[str, Any] | None = None,
     resolution: float | None = None,
+    roadmap: str | Path | None = None,
 ) -> PlanResult:
     """Plan a path for ``scenario`` and certify it.
 
@@ -68,6 +70,8 @@ def plan(
         anytime: let planners that can improve their path do so until the time limit.
         parameters: of the planner; they come before those that the scenario gives for it.
         resolution: of discrete motions, see `planners.setup.install`.
+        roadmap: a file that the planner's roadmap is kept in: loaded if it exists, written when
+            the planner has ended, whether there is a path or not. HighwayRoadmap has one.
 
     Returns:
         The result. ``status`` is "solved", "timeout", "exhausted" (the planner gave up within
@@ -76,10 +80,20 @@ def plan(
 
     Raises:
         PlannerError: unknown planner, parameter or checker, or a combination that cannot work.
+        RoadmapError: the file ``roadmap`` is none of this scene, or cannot be written.
         KeyboardInterrupt: SIGINT arrived; the planner has returned and all is restored.
     """
     request = checked_request(
-        scenario, planner, checker, time_limit, seed, simplify, anytime, parameters, resolution
+        scenario,
+        planner,
+        checker,
+        time_limit,
+        seed,
+        simplify,
+        anytime,
+        parameters,
+        resolution,
+        roadmap,
     )
     for status, configuration in (
         ("invalid_start", scenario.start),
@@ -94,7 +108,10 @@ def plan(
 def _run(request: Request) -> Outcome:
     setup, planner = prepared(request)
     try:
-        return _solved(request, setup, planner)
+        outcome = _solved(request, setup, planner)
+        if request.roadmap is not None:
+            planner.save_roadmap(request.roadmap)
+        return outcome
     finally:
         bindings.clear_sampler(setup.getSpaceInformation())
 

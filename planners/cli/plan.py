@@ -62,6 +62,15 @@ def plan(
     html: Annotated[
         Path | None, typer.Option(metavar="FILE.html", help="Write a page with the moving robot.")
     ] = None,
+    roadmap: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Keep the planner's roadmap in FILE: loaded if it exists, written afterwards, "
+            "path or not. [dim]HighwayRoadmap only; for other starts and goals in the same "
+            "world, with the same robot, clearance and seed.[/dim]",
+        ),
+    ] = None,
     settings: Annotated[
         list[str] | None,
         typer.Option(
@@ -80,12 +89,14 @@ def plan(
 
     ellipsoid-planning plan rabbit-3d-open --seed 1 --output path.json --html path.html
 
+    ellipsoid-planning plan my.yaml --roadmap my.roadmap
+
     ellipsoid-planning plan my.yaml --planner RRTConnect --set planner.range=5 --time-limit 30
     """
-    check_outputs(output=output, csv=csv, html=html)
+    check_outputs(output=output, csv=csv, html=html, roadmap=roadmap)
     _check_limits(time_limit, seed)
     parameters = planner_parameters(settings or [])
-    problem = _checked_scenario(scenario, planner, checker.value, parameters)
+    problem = _checked_scenario(scenario, planner, checker.value, parameters, roadmap)
     from planners import solve
 
     with working(f"Planning {problem.name}, for {time_limit:g} s at most"):
@@ -98,6 +109,7 @@ def plan(
             simplify=simplify,
             anytime=anytime,
             parameters=parameters,
+            roadmap=roadmap,
         )
     if result.status in ("invalid_start", "invalid_goal"):
         which = result.status.removeprefix("invalid_")
@@ -106,25 +118,35 @@ def plan(
         say("Note: the path is not certified; verify it before you rely on it.")
     _print(result, json)
     _write(result, output, csv, html)
+    if roadmap is not None:
+        say(f"Wrote {roadmap}")
     raise typer.Exit(SOLVED if result.solved else NO_PATH)
 
 
 def _checked_scenario(
-    name: str, planner: str | None, checker: str, parameters: dict[str, Any]
+    name: str,
+    planner: str | None,
+    checker: str,
+    parameters: dict[str, Any],
+    roadmap: Path | None,
 ) -> Scenario:
     """Load the scenario and check all that can be wrong, what is quick to check first."""
     from ellipsoid_planning.scenario import load_scenario
     from ellipsoid_planning.scenario_checks import check_endpoints
 
     scenario = load_scenario(name)
-    _check_planner(scenario, planner, checker, parameters)
+    _check_planner(scenario, planner, checker, parameters, roadmap)
     with working_with_kernels(f"Checking start and goal of {scenario.name}"):
         check_endpoints(scenario)
     return scenario
 
 
 def _check_planner(
-    scenario: Scenario, planner: str | None, checker: str, parameters: dict[str, Any]
+    scenario: Scenario,
+    planner: str | None,
+    checker: str,
+    parameters: dict[str, Any],
+    roadmap: Path | None,
 ) -> None:
     """Refuse what `solve.plan` would refuse, before the kernels are compiled."""
     from ellipsoid_planning.errors import PlannerError
@@ -143,6 +165,10 @@ def _check_planner(
             f"{entry.name} works with the plug-in checker only; leave out --checker {checker}, "
             "or choose an OMPL planner with --planner"
         )
+    if roadmap is not None:
+        from planners.request import check_roadmap_file
+
+        check_roadmap_file(entry, roadmap)
     for name, value in own.items() if entry.name == own_name else ():
         _check_own(scenario, entry, name, value)
     try:

@@ -14,8 +14,8 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.kernels import sampling, tree, tree_tables
 from ellipsoid_planning.kernels.motion import motions_are_free
 from ellipsoid_planning.kernels.tree_nearest import insert
-from ellipsoid_planning.metric import path_length
-from ellipsoid_planning.roadmap.highway import SOLVED, TIMEOUT, Outcome
+from ellipsoid_planning.metric import path_length, turn_length
+from ellipsoid_planning.outcome import SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.shorten import shorten
@@ -56,7 +56,8 @@ class FreeIntervalRRTConnect:
         self._kind, self._weight = sampling.FIXED, 0.0
         if robot.rotates:
             self._kind = sampling.PLANAR if robot.dimension == 2 else sampling.SPATIAL
-            self._weight = self._metric_weight()
+            chosen = self.parameters.metric_weight
+            self._weight = turn_length(robot) if chosen is None else float(chosen)
         self.clear()
 
     def clear(self) -> None:
@@ -226,14 +227,6 @@ class FreeIntervalRRTConnect:
                 return shorter
             path = shorter
         return path
-
-    def _metric_weight(self) -> float:
-        if self.parameters.metric_weight is not None:
-            return float(self.parameters.metric_weight)
-        return 0.5 * max(
-            float(np.linalg.norm(part.centre) + part.semi_axes.max())
-            for part in self.cspace.robot.parts
-        )
 
     def _solved(self, path: Array, on_path: Callable[[Array], None] | None) -> Outcome:
         configurations = configurations_from_poses(self.cspace.robot, path)

@@ -168,6 +168,7 @@ def _gap(obstacles, j, parts, placed, i, keys, known):
     """Gap of a pair with its direction, sought from where it was found last."""
     key = j * placed.shape[0] + i
     row = key % keys.shape[0]
+    gap, ux, uy, uz = -math.inf, 1.0, 0.0, 0.0
     if keys[row] == key:
         gap, ux, uy, uz = polish(
             obstacles,
@@ -180,7 +181,9 @@ def _gap(obstacles, j, parts, placed, i, keys, known):
             math.inf,
             CONVERGE,
         )
-    else:
+    same = ux * known[row, 0] + uy * known[row, 1] + uz * known[row, 2]
+    if not (gap > 0.0 and same > 0.9):
+        # From the wrong side of a flat body, one climbs to a depth even where there is a gap.
         lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
         gap, ux, uy, uz, _ = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)
     keys[row] = key

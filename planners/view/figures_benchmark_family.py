@@ -136,10 +136,11 @@ def _frame(axes: Axes, limit: float, *, stuck: bool) -> None:
         axes.axhline(limit, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2)))
         axes.annotate(
             f"time limit {limit:g} s",
-            (0.0, limit),
+            (1.0, limit),  # curves arrive at the limit farther left
             xycoords=("axes fraction", "data"),
             xytext=(0, -11),
             textcoords="offset points",
+            ha="right",
             fontsize=8.5,
             color=QUIET,
         )
@@ -209,7 +210,7 @@ def _arrow_up(axes: Axes, x: float, y: float, look: Style) -> None:
     axes.annotate(
         "",
         (x, y),
-        xytext=(0, 15),
+        xytext=(0, 12.5),
         textcoords="offset points",
         arrowprops={"arrowstyle": "<-", "color": look.colour, "linewidth": 1.1, "shrinkB": 2},
         annotation_clip=False,

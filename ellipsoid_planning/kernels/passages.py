@@ -64,6 +64,7 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
         direction[m] /= length
     here, ahead = path[0], work.ahead
     gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
+    progress[LAST_GAP] = gap
     if gap >= wide or gap <= 0.0:
         # The narrowest place leaves even less room than this one.
         progress[STATE] = OPEN if gap >= wide else CLOSED
@@ -110,6 +111,7 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
         gap, slope = centre(
             scene, here, direction, turns, within, wide, _PRECISE, _FIRST_CENTRING, work
         )
+    progress[LAST_GAP] = gap
     if gap <= 0.0:
         progress[STATE] = CLOSED
     else:

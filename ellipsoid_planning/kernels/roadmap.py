@@ -37,6 +37,7 @@ from .roadmap_tables import (
     GOAL_REACHED,
     GROW,
     JOINED,
+    KNOWN_ENDS,
     LINES,
     NODE_COLUMN,
     NODE_COST,
@@ -162,6 +163,7 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
     rm.counters[OPEN] = 0
     rm.counters[GOAL_REACHED] = -1
     rm.counters[OFFERED] = rm.counters[ENDS]
+    rm.counters[KNOWN_ENDS] = rm.counters[ENDS]
     for k in range(starts.shape[0]):
         swept = starts[k, 1 + axis]
         layer, column = int(starts[k, 0]), int(starts[k, 4])
@@ -198,7 +200,7 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
     placed = new_placed(scene)
     if not _has_room(rm):
         return GROW
-    offer_new_passages(rm, axis, weight)
+    offer_new_passages(rm, axis, goals, inflation, weight)
     for _ in range(steps):
         if not _has_room(rm):
             return GROW
@@ -244,5 +246,5 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             rm.counters[GOAL_REACHED] = node * goals.shape[0] + goal
             return SOLVED
         _expand(rm, node, axis, goals, inflation, weight)
-        offer_passages(rm, node, 0, axis, weight)
+        offer_passages(rm, node, 0, axis, goals, inflation, weight)
     return SEARCHING

@@ -6,11 +6,13 @@ from .roadmap_nodes import node_at
 from .roadmap_open import open_entry
 from .roadmap_proofs import is_proved, middle_is_free
 from .roadmap_tables import (
+    END_LENGTH,
     END_NEAREST,
     END_TRIED,
     END_USED,
     ENDS,
     FIRST_PASSAGE,
+    KNOWN_ENDS,
     NODE_COLUMN,
     NODE_COST,
     NODE_ENTRY,
@@ -31,8 +33,8 @@ OFFERS = 64
 
 
 @kernel
-def offer_passages(rm, node, first, axis, weight):
-    """Open the ways from ``node`` into passages whose end is the nearest node yet to it."""
+def offer_passages(rm, node, first, axis, goals, inflation, weight):
+    """Open the ways from ``node`` into passages to whose end it is the nearest node yet."""
     layer, column = rm.node_integers[node, NODE_LAYER], rm.node_integers[node, NODE_COLUMN]
     entry, query = rm.node_reals[node, NODE_ENTRY], rm.counters[QUERY]
     for end in range(first, rm.counters[ENDS]):
@@ -46,17 +48,25 @@ def offer_passages(rm, node, first, axis, weight):
         rm.end_integers[end, END_TRIED] = query
         rm.end_reals[end, END_NEAREST] = away
         cost = rm.node_reals[node, NODE_COST] + away
-        # Ahead of everything else: there are few, and a passage may be the only way.
-        open_entry(rm, 0.0, cost, entry, -1, node, FIRST_PASSAGE - end)
+        priority = 0.0
+        if end < rm.counters[KNOWN_ENDS]:
+            other = rm.end_reals[end ^ 1]
+            place = int(other[0]), int(other[4]), other[1 + axis]
+            priority = cost + other[END_LENGTH]
+            priority += inflation * heuristic(
+                rm.orientations, rm.columns, place[0], place[1], place[2], axis, goals, weight
+            )
+        # What was found because the search got nowhere else goes ahead of everything.
+        open_entry(rm, priority, cost, entry, -1, node, FIRST_PASSAGE - end)
 
 
 @inlined
-def offer_new_passages(rm, axis, weight):
+def offer_new_passages(rm, axis, goals, inflation, weight):
     """Offer passages that were found since the query's last step to the nodes reached so far."""
     if rm.counters[OFFERED] < rm.counters[ENDS]:
         for node in range(rm.counters[NODES]):
             if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
-                offer_passages(rm, node, rm.counters[OFFERED], axis, weight)
+                offer_passages(rm, node, rm.counters[OFFERED], axis, goals, inflation, weight)
         rm.counters[OFFERED] = rm.counters[ENDS]
 
 

@@ -33,7 +33,9 @@ ENDS = 14
 OFFERED = 15
 PASSAGES_USED = 16
 STEPS = 17
-COUNTERS = 18
+# Ends that were known when the present query began.
+KNOWN_ENDS = 18
+COUNTERS = 19
 
 # Node columns of the integer table
 NODE_LAYER = 0

@@ -15,7 +15,14 @@ import numpy as np
 
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
-from ellipsoid_planning.kernels import centring, contact_model, motion, passages
+from ellipsoid_planning.kernels import (
+    centring,
+    contact_model,
+    linear,
+    motion,
+    passages,
+    validity,
+)
 from ellipsoid_planning.kernels.compile import CACHE_FOLDER
 from ellipsoid_planning.roadmap.gates import GateFinder, probe
 from ellipsoid_planning.robots.rigid import RigidRobot
@@ -53,6 +60,9 @@ def compile_passage_kernels(cspace: CSpace) -> None:
     contact_model.samples_along(pose[0], step, 1.0, np.empty((1, 7)))
     contact_model.difference(pose[0], pose[0], 1.0, step)
     contact_model.moved(pose[0], step, 1.0, pose[0])
+    linear.rotation_matrix(0.0, 0.0, 0.0, 1.0)
+    validity.are_free(scene, pose, np.empty(1, dtype=np.bool_))
+    validity.configuration_is_free(scene, *pose[0])
     GateFinder(cspace, *probe(cspace), 1.0, workspace).compile_kernels()
 
 

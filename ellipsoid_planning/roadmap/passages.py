@@ -17,10 +17,13 @@ from ellipsoid_planning.roadmap.seeds import Seed, seeds_of_query
 
 Array = NDArray[np.float64]
 
-# In units of the robot's reach: how far around the robot bodies are looked for, at which gap a
-# passage has opened, and how long it may be.
+# In units of the robot's reach: how far around the robot bodies are looked for, which gap makes no
+# narrow place, at which gap a passage has opened (or if it is that wide itself, how many times as
+# wide), and how long it may be.
 _WITHIN = 0.5
+_NARROW = 0.36
 _WIDE = 0.25
+_WIDER = 1.3
 _LONGEST = 16.0
 # Room for the poses of a passage, at first, and pairs of bodies that one call of the kernel looks
 # at, so that it takes about half a millisecond.
@@ -122,14 +125,17 @@ class PassageFinder:
         middle = seed.pose.reshape(1, 7).copy()
         if seed.centred:
             state = np.zeros(passages.PROGRESS)
-            self._follow(state, seed.across.copy(), middle, 1)
+            self._follow(state, seed.across.copy(), middle, 1, _NARROW)
             yield
             if state[passages.STATE] != passages.FOLLOWING:
-                self.seeds_closed += state[passages.STATE] == passages.CLOSED
+                self.seeds_closed += int(state[passages.STATE] == passages.CLOSED)
                 return
             if self._known(middle[0]):
                 return
         self._promising = self.seeds_tried == self._tried_before + 1
+        wide = _WIDE
+        if seed.centred:
+            wide = max(_WIDE, _WIDER * float(state[passages.LAST_GAP]) / self._reach)
         halves = []
         for sign in (1.0, -1.0) if seed.centred else (1.0,):
             state = np.zeros(passages.PROGRESS)
@@ -140,7 +146,7 @@ class PassageFinder:
             while state[passages.STATE] == passages.FOLLOWING:
                 if count == len(path):
                     path = np.concatenate([path, np.empty_like(path)])
-                count = self._follow(state, direction, path, count)
+                count = self._follow(state, direction, path, count, wide)
                 yield
             halves.append(path[:count])
         poses = np.vstack([halves[-1][::-1], halves[0][1:]]) if seed.centred else halves[0]
@@ -149,7 +155,7 @@ class PassageFinder:
             self.found.append(Passage(poses, self._length(poses)))
             yield
 
-    def _follow(self, state: Array, direction: Array, path: Array, count: int) -> int:
+    def _follow(self, state: Array, direction: Array, path: Array, count: int, wide: float) -> int:
         reach = self._reach
         return int(
             passages.follow(
@@ -158,7 +164,7 @@ class PassageFinder:
                 direction,
                 self.cspace.rotates,
                 _WITHIN * reach,
-                _WIDE * reach,
+                wide * reach,
                 _LONGEST * reach,
                 path,
                 count,

@@ -63,9 +63,9 @@ def test_queries_in_other_places_have_levels_of_their_own():
     ends = ends[cspace.are_valid(ends)]
     outcome = planner.solve(ends[:1], ends[1:2], lambda: False)
     assert outcome.status == SOLVED
+    assert planner.levels[0].statistics["lines"] == lines
     again = planner.solve(scenario.start[None], scenario.goal[None], lambda: False)
     assert again.status == SOLVED
     boxes = [level.box for level in planner.levels]
     assert not np.array_equal(boxes[0], boxes[1])
     assert len(boxes) == 2
-    assert planner.levels[0].statistics["lines"] == lines

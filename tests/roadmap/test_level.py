@@ -159,7 +159,7 @@ def test_a_second_query_evaluates_next_to_nothing():
     assert planner.statistics["lines"] == before["lines"]
     assert planner.statistics["intervals"] == before["intervals"]
     planner.clear()
-    assert planner.statistics == {"levels": 0, "direct_motions": 0}
+    assert not any(planner.statistics.values())
 
 
 def test_tables_that_start_tiny_grow_without_changing_the_path(monkeypatch):

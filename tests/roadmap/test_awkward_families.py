@@ -1,6 +1,5 @@
-"""The families' worlds made awkward: other units, bodies twice, ends in passages, far bases."""
+"""The families' worlds made awkward: other units, bodies twice, ends in passages."""
 
-import numpy as np
 import pytest
 
 from ellipsoid_planning.families import make_family, make_family_scene

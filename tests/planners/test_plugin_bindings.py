@@ -12,12 +12,12 @@ from ompl import util as ou
 
 from ellipsoid_planning.errors import PlannerError
 from planners import bindings
-from planners.registry import planner_names
+from planners.registry import BoundPlanner, find_planner, planner_names
 from planners.setup import simple_setup
 from planners.spaces import state_access, write_configuration
 from tests.planners.planner_scenes import run_python, scenario_of
 
-BOUND = planner_names()[1:]
+BOUND = tuple(name for name in planner_names() if isinstance(find_planner(name), BoundPlanner))
 EXACT = ob.PlannerStatus.PlannerStatusType.EXACT_SOLUTION
 
 PROBLEM = """

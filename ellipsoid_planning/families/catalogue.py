@@ -19,6 +19,7 @@ from ellipsoid_planning.families.window_3d import window_3d
 from ellipsoid_planning.scenario import Scenario
 
 LARGEST_CLEARANCE = 1.0
+SMALLEST_CLEARANCE = 1e-13
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,11 @@ def _check_clearance(clearance: float, *, blocked: bool) -> None:
         raise FamilyError(
             f"expected a clearance above 0 and at most {LARGEST_CLEARANCE:g}, got {clearance:g}: "
             "it is free play divided by the robot's width"
+        )
+    if clearance < SMALLEST_CLEARANCE:
+        raise FamilyError(
+            f"expected a clearance of at least {SMALLEST_CLEARANCE:g}, got {clearance:g}: less "
+            "free play is lost in the rounding of the bodies' positions"
         )
     if blocked and clearance == 1.0:
         raise FamilyError(

@@ -63,8 +63,11 @@ def _exponent(points: Sequence[tuple[float, float]]) -> float:
         return math.nan
     logs = [(math.log(clearance), math.log(seconds)) for clearance, seconds in points]
     centre = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
+    spread = sum((x - centre[0]) ** 2 for x, _ in logs)
+    if not spread > 0.0:  # all at one clearance: there is nothing to fit
+        return math.nan
     moment = sum((x - centre[0]) * (y - centre[1]) for x, y in logs)
-    return -moment / sum((x - centre[0]) ** 2 for x, _ in logs)
+    return -moment / spread
 
 
 def growth_notes(rows: Iterable[Row]) -> list[str]:

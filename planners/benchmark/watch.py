@@ -131,7 +131,8 @@ class _Watch:
 
     def _ended(self) -> RunRecord:
         code = self.process.returncode
-        if code == 0:
+        # A planner may end the process with code 0 as well; then there is no record.
+        if code == 0 and (self.folder / RECORD).exists():
             text = (self.folder / RECORD).read_text(encoding="utf-8")
             record = RunRecord(**json.loads(text))
             return record if record.log is not None else self._failure(CRASHED, record.reason)

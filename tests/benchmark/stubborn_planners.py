@@ -58,6 +58,11 @@ class Leaving(Stubborn):
         os._exit(3)
 
 
+class Quitting(Stubborn):
+    def misbehave(self, _):
+        os._exit(0)
+
+
 class Lying(Stubborn):
     """Reports the straight way to the goal, whatever stands in it."""
 

@@ -86,6 +86,15 @@ def test_times_in_units_that_suit():
     ]
 
 
+def test_scenes_of_one_clearance_have_no_growth():
+    contender = Contender("RRT", "plugin", "RRT")
+    problems = [Problem(f"gap-{k}", ({},), "gap-2d", 1e-2) for k in range(2)]
+    records = [record("RRT", 0, problem=f"gap-{k}", seconds=0.1 + k) for k in range(2)]
+    rows = summarised(Campaign(tuple(problems), (contender,), 1, LIMIT, 1.0, 1), records)
+    (growth,) = growths(rows)
+    assert math.isnan(growth.exponent)
+
+
 def test_the_growth_of_a_family():
     contender = Contender("RRT", "plugin", "RRT")
     problems = [Problem(f"gap-{c:g}", ({},), "gap-2d", c) for c in (1e-1, 1e-2, 1e-3, 1e-4)]

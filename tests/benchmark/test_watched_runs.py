@@ -44,6 +44,7 @@ MISBEHAVIOUR = {
     "Raising": ("crashed", "no way out"),
     "Hoarding": ("out of memory", "the limit is 60 MB"),
     "Leaving": ("crashed", "ended with exit code 3"),
+    "Quitting": ("crashed", "ended with exit code 0 while planning"),
     "Lying": ("not free", "obstacles: part 'hull' hits obstacle 'wall'"),
     "Sleeping": ("timeout", "no path within 0.4 s"),
 }

@@ -135,6 +135,7 @@ def test_the_description_says_what_is_missing():
         (("gap", 0.0), {}, ["above 0"]),
         (("gap", -1e-3), {}, ["above 0", "-0.001"]),
         (("gap", float("nan")), {}, ["above 0", "nan"]),
+        (("gap", 1e-15), {}, ["at least 1e-13", "1e-15"]),
         (("gap", float("inf")), {}, ["at most 1"]),
         (("gap", 1.5), {}, ["at most 1", "1.5"]),
         (("gap", 1.0), {"blocked": True}, ["below 1"]),

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.robots.rigid import RigidRobot
 
 Array = NDArray[np.float64]
@@ -80,17 +81,10 @@ def _planar(robot: RigidRobot) -> Array:
     return np.column_stack([np.cos(low), np.sin(low)])
 
 
-def _spread(count: int) -> Array:
-    """Directions (count, 3) spread evenly over half the sphere (Fibonacci)."""
-    k = np.arange(count) + 0.5
-    z, turn = 1.0 - k / count, math.pi * (3.0 - math.sqrt(5.0)) * k
-    across = np.sqrt(1.0 - z * z)
-    return np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
-
-
 def _spatial(robot: RigidRobot) -> Array:
     axes = np.vstack([part.rotation.T for part in robot.parts])
-    v = _descended(robot, np.vstack([axes, _spread(_DIRECTIONS)]), 0.2, _ROUNDS)
+    half_sphere = unit_directions(3, 2 * _DIRECTIONS)[:_DIRECTIONS]
+    v = _descended(robot, np.vstack([axes, half_sphere]), 0.2, _ROUNDS)
     v = _distinct(v[np.argsort(width(robot, v), kind="stable")], _ROUGHLY_SAME)
     v = _descended(robot, v, 0.1, _MORE_ROUNDS)
     return _distinct(v[np.argsort(width(robot, v), kind="stable")], _SAME)

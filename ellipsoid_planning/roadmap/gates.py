@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.kernels import centring, layout, placement, saddles
 
 Array = NDArray[np.float64]
@@ -201,14 +202,10 @@ def _farthest(body: Array, direction: Array) -> Array:
 def _directions(dimension: int) -> tuple[Array, NDArray[np.int64]]:
     """Directions (m, 3) all round, and those next to each (m, k), in order round it."""
     if dimension == 2:
-        angles = np.linspace(0.0, 2.0 * np.pi, _HEADINGS, endpoint=False)
         index = np.arange(_HEADINGS)
         around = np.column_stack([index - 1, (index + 1) % _HEADINGS])
-        return np.column_stack([np.cos(angles), np.sin(angles), np.zeros(_HEADINGS)]), around
-    k = np.arange(_SPREAD) + 0.5
-    z, turn = 1.0 - 2.0 * k / _SPREAD, np.pi * (3.0 - np.sqrt(5.0)) * k
-    across = np.sqrt(1.0 - z * z)
-    u = np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
+        return np.pad(unit_directions(2, _HEADINGS), ((0, 0), (0, 1))), around
+    u = unit_directions(3, _SPREAD)
     around = np.argsort(-(u @ u.T), axis=1)[:, 1:7]
     first = np.cross(u, np.eye(3)[np.argmin(np.abs(u), axis=1)])
     second = np.cross(u, first)

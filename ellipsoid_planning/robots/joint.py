@@ -1,0 +1,121 @@
+"""Joints: how one link of an articulated robot moves against another."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.orientation import check_rotation
+
+REVOLUTE = "revolute"
+CONTINUOUS = "continuous"
+PRISMATIC = "prismatic"
+BALL = "ball"
+FIXED = "fixed"
+JOINT_TYPES = (REVOLUTE, CONTINUOUS, PRISMATIC, BALL, FIXED)
+LIMITED = (REVOLUTE, PRISMATIC)
+
+# How many numbers of a configuration a joint of each type takes.
+VALUE_COUNTS = {REVOLUTE: 1, CONTINUOUS: 1, PRISMATIC: 1, BALL: 4, FIXED: 0}
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint between two links, in the words of URDF.
+
+    The joint's frame stands at ``position`` with ``rotation`` in the parent's frame. The child's
+    frame is the joint's frame after the joint's motion: a turn by the joint's value [rad] about
+    ``axis`` (revolute, continuous), a shift by it along ``axis`` (prismatic), the rotation of a
+    quaternion (x, y, z, w) (ball), nothing (fixed).
+
+    Attributes:
+        name, parent, child: names of the joint and of the two links.
+        type: one of ``JOINT_TYPES``.
+        position: (n,), by default 0.
+        rotation: (n, n), by default the identity.
+        axis: unit vector in the joint's frame, (n,); by default x, as in URDF. In the plane,
+            revolute and continuous joints turn anticlockwise and have none (None).
+        lower, upper: the limits of a revolute [rad] or prismatic joint, finite; a continuous
+            joint has [-pi, pi], the others none (0, 0).
+
+    Raises:
+        GeometryError: if a value does not fit the type or the dimension.
+    """
+
+    name: str
+    parent: str
+    child: str
+    type: str
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    axis: NDArray[np.float64] | None = None
+    lower: float = 0.0
+    upper: float = 0.0
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        parent: str,
+        child: str,
+        type: str,  # noqa: A002 (URDF's word)
+        position: ArrayLike,
+        rotation: ArrayLike | None = None,
+        axis: ArrayLike | None = None,
+        lower: float = 0.0,
+        upper: float = 0.0,
+    ) -> Joint:
+        """A joint from plain numbers; ``axis`` has any length but zero."""
+        at = np.array(position, dtype=float)
+        turned = np.eye(len(at)) if rotation is None else np.array(rotation, dtype=float)
+        direction = None if axis is None else np.array(axis, dtype=float)
+        return cls(name, parent, child, type, at, turned, direction, lower, upper)
+
+    def __post_init__(self) -> None:
+        if self.type not in JOINT_TYPES:
+            raise self._error(f"expected one of {', '.join(JOINT_TYPES)}, got {self.type!r}")
+        position = np.array(self.position, dtype=float)
+        if position.shape not in ((2,), (3,)) or not np.all(np.isfinite(position)):
+            raise self._error(f"expected a position of 2 or 3 finite numbers, got {position}")
+        n = len(position)
+        if self.type == BALL and n == 2:
+            raise self._error("there are no ball joints in the plane; use a continuous joint")
+        self._keep("position", position)
+        self._keep("rotation", check_rotation(self.rotation, n))
+        self._keep("axis", self._unit_axis(n))
+        self._check_limits()
+
+    def _keep(self, name: str, value: NDArray[np.float64] | None) -> None:
+        if value is not None:
+            value.setflags(write=False)
+        object.__setattr__(self, name, value)
+
+    def _unit_axis(self, n: int) -> NDArray[np.float64] | None:
+        if self.type in (BALL, FIXED) or (n == 2 and self.type != PRISMATIC):
+            return None
+        axis = np.eye(n)[0] if self.axis is None else np.array(self.axis, dtype=float)
+        length = float(np.linalg.norm(axis)) if axis.shape == (n,) else 0.0
+        if not 0.0 < length < math.inf:
+            raise self._error(f"expected an axis of {n} numbers other than zero, got {axis}")
+        return axis / length
+
+    def _check_limits(self) -> None:
+        if self.type == CONTINUOUS:
+            object.__setattr__(self, "lower", -math.pi)
+            object.__setattr__(self, "upper", math.pi)
+        if self.type in LIMITED and not -math.inf < self.lower < self.upper < math.inf:
+            raise self._error(
+                f"expected finite limits, lower < upper, got {self.lower:g} and {self.upper:g}"
+            )
+
+    def _error(self, problem: str) -> GeometryError:
+        return GeometryError(f"joint {self.name!r}: {problem}")
+
+    @property
+    def value_count(self) -> int:
+        """How many numbers of a configuration the joint takes: 0, 1 or 4."""
+        return VALUE_COUNTS[self.type]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +17,9 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_quaternion,
     rotation_from_yaw,
 )
+from ellipsoid_planning.robots.joint import Joint
+
+BASE_LINK = "base"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +72,37 @@ class RigidRobot:
         if not self.rotates:
             return self.dimension
         return 3 if self.dimension == 2 else 7
+
+    @property
+    def base_size(self) -> int:
+        """How many numbers of a configuration place the base: all of them."""
+        return self.configuration_size
+
+    @property
+    def root(self) -> str:
+        """Name of the one link, which all parts are fixed to."""
+        return BASE_LINK
+
+    @property
+    def part_links(self) -> tuple[str, ...]:
+        """The name of each part's link."""
+        return (BASE_LINK,) * len(self.parts)
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """None."""
+        return ()
+
+    @property
+    def joint_slices(self) -> Mapping[str, slice]:
+        """Where the values of each joint stand in a configuration: nowhere."""
+        return MappingProxyType({})
+
+    def link_poses(
+        self, configuration: ArrayLike
+    ) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """The base pose, by the name of the one link."""
+        return {BASE_LINK: self.pose(configuration)}
 
     def pose(self, configuration: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the base position (n,) and rotation (n, n), base to world, of a configuration.

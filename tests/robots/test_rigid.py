@@ -79,3 +79,12 @@ def test_impossible_worlds_are_refused():
         World([0, 1], [1, 1, 1])
     with pytest.raises(GeometryError, match="dimension 3"):
         World([0, 0], [1, 1], obstacles=(BALL,))
+
+
+def test_a_rigid_robot_is_one_link_without_joints():
+    robot = RigidRobot((FACE, EAR))
+    assert (robot.root, robot.part_links) == ("base", ("base", "base"))
+    assert (robot.base_size, robot.joints, dict(robot.joint_slices)) == (3, (), {})
+    ((position, rotation),) = robot.link_poses([1.0, 2.0, 0.5]).values()
+    np.testing.assert_array_equal(position, [1.0, 2.0])
+    np.testing.assert_array_equal(rotation, robot.pose([1.0, 2.0, 0.5])[1])

@@ -18,6 +18,7 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_yaw,
 )
 from ellipsoid_planning.robots.joint import BALL, FIXED, PRISMATIC, Joint
+from ellipsoid_planning.robots.reach import joint_weights
 from ellipsoid_planning.robots.tree import check_tree, joints_in_order
 
 Array = NDArray[np.float64]
@@ -166,6 +167,13 @@ class ArticulatedRobot:
             slices[joint.name] = slice(first, first + joint.value_count)
             first += joint.value_count
         return slices
+
+    @cached_property
+    def joint_weights(self) -> Array:
+        """(J,), what each moving joint counts in the metric, see robots.reach; read-only."""
+        weights = joint_weights(self)
+        weights.setflags(write=False)
+        return weights
 
     def pose(self, configuration: ArrayLike) -> tuple[Array, Array]:
         """Return the base position (n,) and rotation (n, n), base to world, of a configuration.

@@ -67,9 +67,9 @@ def frame(points: NDArray[np.float64], azimuth: float | None) -> Camera:
 def side_view(start: NDArray[np.float64], goal: NDArray[np.float64]) -> float:
     """Return the azimuth [rad] from which the way from start to goal runs left to right.
 
-    Both are positions, or configurations that begin with them, of a spatial scenario.
+    Both are positions (3,).
     """
-    way = goal[:3] - start[:3]
+    way = goal - start
     if math.hypot(way[0], way[1]) <= 1e-6 * float(np.linalg.norm(way)) + 1e-12:
         return math.radians(DEFAULT_AZIMUTH_DEG)
     # Turned a little from the exact side, so that boxes and rings do not look flat.

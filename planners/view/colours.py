@@ -11,6 +11,7 @@ ARENA = "#56b4e9"
 START = "#009e73"
 GOAL = "#d55e00"
 ROBOT = "#0072b2"
+JOINT = "#262626"
 PATH = "#1a1a1a"
 ROADMAP = "#cc79a7"
 C_OBSTACLE = "#e69f00"
@@ -18,6 +19,11 @@ FREE_INTERVAL = "#56b4e9"
 SWEEP_LINE = "#c8c8c8"
 FRAME = "#b0b0b0"
 OUTSIDE = "#ececec"
+
+# The links of a moving robot, over again where there are more; neither green nor orange, as its
+# start and goal are. The first is the robot's own; the others are of Paul Tol's schemes ("Colour
+# Schemes", 2021), which keep apart for the same readers.
+LINKS = (ROBOT, "#ddaa33", "#882255", "#33bbee", "#999933", "#aa4499", "#332288", "#cc6677")
 
 
 def rgb(colour: str) -> tuple[float, float, float]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ellipsoid_planning.geometry.orientation import quaternion_from_rotation
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
@@ -24,6 +26,8 @@ class Slab:
 FLOOR = Slab(-1.0, 0.0)
 SOLID = Slab(0.0, 2.0)
 ABOVE = Slab(0.0, 2.6)  # the moving robot, seen over its own start and goal
+STILL_JOINTS = Slab(1.9, 1.9)
+JOINTS = Slab(2.5, 2.5)
 LINES = Slab(2.6, 3.4)  # the path and the roadmap, seen over the bodies
 
 
@@ -66,14 +70,14 @@ class Embedding:
         height = self.thickness * 0.5 * (slab.bottom + slab.top)
         return np.column_stack([flat, np.full(len(flat), height)])
 
-    def quaternion(self, configuration: NDArray[np.float64]) -> NDArray[np.float64] | None:
-        """Return the (x, y, z, w) of a configuration (d,), None if it holds a position only."""
-        if len(configuration) == self.dimension:
-            return None
-        if self.dimension == 3:
-            return np.asarray(configuration[3:7] / np.linalg.norm(configuration[3:7]))
-        half = 0.5 * configuration[2]
-        return np.array([0.0, 0.0, np.sin(half), np.cos(half)])
+    def pose(
+        self, position: NDArray[np.float64], rotation: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the position (3,) and the (x, y, z, w) of a pose (n,), (n, n), on the floor."""
+        n = self.dimension
+        point, turned = np.zeros(3), np.eye(3)
+        point[:n], turned[:n, :n] = position, rotation
+        return point, quaternion_from_rotation(turned)
 
 
 def outline(body: Ellipsoid, count: int = 96) -> NDArray[np.float64]:

@@ -8,14 +8,18 @@ import numpy as np
 
 from planners.view import colours
 from planners.view.embedding import outline
+from planners.view.joint_markers import joint_markers
+from planners.view.links import followed_points, ghost_count, link_colours, link_shades
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from matplotlib.axes import Axes
     from matplotlib.patches import Ellipse
+    from numpy.typing import NDArray
 
     from ellipsoid_planning.geometry import Ellipsoid
+    from ellipsoid_planning.robots import Robot
     from ellipsoid_planning.scenario import Scenario
     from planners.view.trajectory import Trajectory
 
@@ -35,8 +39,9 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
         axes.add_patch(ellipse(obstacle, facecolor=colours.OBSTACLE, linewidth=0, zorder=2))
     if trajectory is not None:
         _draw_swept(axes, scenario, trajectory)
-    _draw_bodies(axes, robot.bodies_at(scenario.start), colours.START, 5)
-    _draw_bodies(axes, robot.bodies_at(scenario.goal), colours.GOAL, 5)
+    for configuration, colour in ((scenario.start, colours.START), (scenario.goal, colours.GOAL)):
+        _draw_robot(axes, robot, configuration, link_shades(robot, colour), 5)
+        _draw_joints(axes, robot, configuration)
     _label(axes, robot.bodies_at(scenario.start), "start")
     _label(axes, robot.bodies_at(scenario.goal), "goal")
     finish(axes)
@@ -71,20 +76,47 @@ def finish(axes: Axes) -> None:
 
 
 def _draw_swept(axes: Axes, scenario: Scenario, trajectory: Trajectory) -> None:
-    for configuration in trajectory.evenly(SWEPT_POSES)[1:-1]:
-        bodies = scenario.robot.bodies_at(configuration)
-        _draw_bodies(axes, bodies, colours.tint(colours.ROBOT, 0.55), 3, colours.ROBOT)
-    positions = trajectory.configurations[:, :2]
+    edges = link_colours(scenario.robot)
+    fills = {link: colours.tint(colour, 0.55) for link, colour in edges.items()}
+    for configuration in trajectory.evenly(ghost_count(scenario.robot, SWEPT_POSES))[1:-1]:
+        _draw_robot(axes, scenario.robot, configuration, fills, 3, edges)
+    positions = followed_points(scenario.robot, trajectory.configurations)
     axes.plot(*positions.T, color=colours.PATH, linewidth=1.6, zorder=6)
 
 
-def _draw_bodies(
-    axes: Axes, bodies: Iterable[Ellipsoid], colour: str, zorder: float, edge: str = "none"
+def _draw_robot(
+    axes: Axes,
+    robot: Robot,
+    configuration: NDArray[np.float64],
+    fills: Mapping[str, str],
+    zorder: float,
+    edges: Mapping[str, str] | None = None,
 ) -> None:
-    for body in bodies:
-        axes.add_patch(
-            ellipse(body, facecolor=colour, edgecolor=edge, linewidth=0.6, zorder=zorder)
-        )
+    """Draw each part in its link's colours."""
+    for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
+        edge = "none" if edges is None else edges[link]
+        look = {"facecolor": fills[link], "edgecolor": edge, "linewidth": 0.6, "zorder": zorder}
+        axes.add_patch(ellipse(body, **look))
+
+
+def _draw_joints(axes: Axes, robot: Robot, configuration: NDArray[np.float64]) -> None:
+    from matplotlib.patches import Circle
+
+    poses = robot.link_poses(configuration)
+    for marker in joint_markers(robot):
+        points = marker.placed(poses)
+        axes.plot(*points.T, color=colours.JOINT, linewidth=1.0, zorder=5.5)
+        for point in points:
+            axes.add_patch(
+                Circle(
+                    (point[0], point[1]),
+                    marker.radius,
+                    facecolor="white",
+                    edgecolor=colours.JOINT,
+                    linewidth=0.5,
+                    zorder=5.6,
+                )
+            )
 
 
 def _label(axes: Axes, bodies: Iterable[Ellipsoid], text: str) -> None:

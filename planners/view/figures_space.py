@@ -8,15 +8,18 @@ import numpy as np
 
 from planners.view import colours
 from planners.view.camera import Camera, frame, side_view
+from planners.view.joint_markers import joint_markers
+from planners.view.links import followed_points, ghost_count, link_colours, link_shades
 from planners.view.surfaces import ellipsoid_patches, path_radius, tube_patches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from ellipsoid_planning.geometry import Ellipsoid
+    from ellipsoid_planning.robots import Robot
     from ellipsoid_planning.scenario import Scenario
     from planners.view.trajectory import Trajectory
 
@@ -79,7 +82,8 @@ def workspace_camera(scenario: Scenario) -> Camera:
     still = [*robot.bodies_at(scenario.start), *robot.bodies_at(scenario.goal)]
     bodies = [*world.arenas, *world.obstacles, *still]
     points = np.concatenate([body.surface_points(200) for body in bodies])
-    return frame(points, side_view(scenario.start, scenario.goal))
+    ends = followed_points(robot, np.array([scenario.start, scenario.goal]))
+    return frame(points, side_view(*ends))
 
 
 def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None) -> None:
@@ -98,8 +102,9 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     _add_bodies(painting, world.obstacles, colours.OBSTACLE)
     if trajectory is not None:
         _add_swept(painting, scenario, trajectory)
-    _add_bodies(painting, robot.bodies_at(scenario.start), colours.START)
-    _add_bodies(painting, robot.bodies_at(scenario.goal), colours.GOAL)
+    for configuration, colour in ((scenario.start, colours.START), (scenario.goal, colours.GOAL)):
+        _add_robot(painting, robot, configuration, link_shades(robot, colour), 96)
+        _add_joints(painting, robot, configuration)
     painting.paint(axes, 3)
     axes.set_aspect("equal", anchor="N")
     axes.autoscale_view()
@@ -113,11 +118,30 @@ def _add_bodies(
         painting.add(ellipsoid_patches(body, 96, 48), colour, inside)
 
 
+def _add_robot(
+    painting: Painting,
+    robot: Robot,
+    configuration: NDArray[np.float64],
+    shades: Mapping[str, str],
+    fineness: int,
+) -> None:
+    """Add each part in its link's shade."""
+    for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
+        painting.add(ellipsoid_patches(body, fineness, fineness // 2), shades[link])
+
+
+def _add_joints(painting: Painting, robot: Robot, configuration: NDArray[np.float64]) -> None:
+    poses = robot.link_poses(configuration)
+    for marker in joint_markers(robot):
+        painting.add(tube_patches(marker.placed(poses), marker.radius), colours.JOINT)
+
+
 def _add_swept(painting: Painting, scenario: Scenario, trajectory: Trajectory) -> None:
-    for configuration in trajectory.evenly(SWEPT_POSES)[1:-1]:
-        for body in scenario.robot.bodies_at(configuration):
-            painting.add(ellipsoid_patches(body, 40, 20), colours.tint(colours.ROBOT, 0.3))
-    positions = trajectory.configurations[:, :3]
+    robot = scenario.robot
+    shades = {link: colours.tint(hue, 0.3) for link, hue in link_colours(robot).items()}
+    for configuration in trajectory.evenly(ghost_count(robot, SWEPT_POSES))[1:-1]:
+        _add_robot(painting, robot, configuration, shades, 40)
+    positions = followed_points(robot, trajectory.configurations)
     radius = path_radius(scenario.robot.parts, 0.5 * painting.camera.distance)
     painting.add(tube_patches(positions, radius, sides=6), colours.PATH)
 

@@ -30,6 +30,8 @@ POLICY = (
     "img-src data: blob:; connect-src data: blob:; worker-src blob:"
 )
 
+MOST_LINKS = 12  # that the legend tells apart
+
 STYLE = """
 body { margin: 0; font: 14px/1.4 system-ui, sans-serif; color: #1a1a1a; }
 #meshcat-pane { width: 100vw; height: 100vh; overflow: hidden; }
@@ -147,10 +149,19 @@ def _caption(scenario: Scenario, result: PlanResult | None) -> list[str]:
 def _legend_entry(scene: Scene, folder: str, colour: str) -> str:
     pressed = "false" if folder in scene.hidden else "true"
     shown = colours.tint(colour, 0.5) if folder == "arena" else colour
+    links = scene.links if folder == "robot" and len(scene.links) <= MOST_LINKS else ()
+    swatches = [_swatch(shown) + html.escape(folder)]
+    if links:
+        swatches = [f"{html.escape(folder)}:"]
+        swatches += [_swatch(colour) + html.escape(name) for name, colour in links]
     return (
         f'<button data-folder="{html.escape(folder)}" aria-pressed="{pressed}">'
-        f'<i style="background:{shown}"></i>{html.escape(folder)}</button>'
+        f"{' '.join(swatches)}</button>"
     )
+
+
+def _swatch(colour: str) -> str:
+    return f'<i style="background:{colour}"></i>'
 
 
 @functools.cache

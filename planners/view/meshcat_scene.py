@@ -13,13 +13,24 @@ import numpy as np
 
 from planners.view import colours, meshcat_shapes
 from planners.view.camera import FIELD_OF_VIEW_DEG, Camera, frame, side_view
-from planners.view.embedding import ABOVE, FLOOR, SOLID, Embedding, Slab, outline
+from planners.view.embedding import (
+    ABOVE,
+    FLOOR,
+    JOINTS,
+    SOLID,
+    STILL_JOINTS,
+    Embedding,
+    Slab,
+    outline,
+)
+from planners.view.links import followed_points, link_colours, link_shades
 from planners.view.meshcat_animation import animate
+from planners.view.meshcat_robot import hang_robot, named, place_robot
 from planners.view.surfaces import path_radius
 from planners.view.trajectory import Trajectory, follow
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -45,6 +56,7 @@ class Scene:
         camera: the camera that the commands set, in the scenario's coordinates.
         embedding: how planar bodies became solids.
         folders: the names of the switchable groups, each with its colour, in drawing order.
+        links: the names of the moving robot's links, each with its colour; none if it is rigid.
         hidden: those of the folders that are hidden at first.
     """
 
@@ -53,6 +65,7 @@ class Scene:
     embedding: Embedding
     folders: tuple[tuple[str, str], ...]
     hidden: tuple[str, ...]
+    links: tuple[tuple[str, str], ...] = ()
 
 
 def build_scene(
@@ -78,6 +91,7 @@ def build_scene(
         builder.embedding,
         tuple(builder.folders),
         hidden,
+        tuple(builder.links),
     )
 
 
@@ -87,12 +101,14 @@ class _SceneBuilder:
         still = _still_points(scenario)
         self.size = float(np.max(np.ptp(still, axis=0)))
         self.embedding = Embedding(self.world.dimension, THICKNESS * self.size)
-        azimuth = None if scenario.dimension == 2 else side_view(scenario.start, scenario.goal)
+        ends = followed_points(self.robot, np.array([scenario.start, scenario.goal]))
+        azimuth = None if scenario.dimension == 2 else side_view(*ends)
         self.camera = frame(self.embedding.points(still, SOLID), azimuth)
         self.recorder = meshcat_shapes.CommandRecorder()
         self.visualizer = meshcat_shapes.recorded_visualizer(self.recorder)
         self.root = self.visualizer["/" + ROOT]
         self.folders: list[tuple[str, str]] = []
+        self.links: list[tuple[str, str]] = []
         self._set_surroundings()
 
     def draw_world(self) -> None:
@@ -106,18 +122,22 @@ class _SceneBuilder:
     def draw_still_robot(self, name: str, configuration: NDArray[np.float64], colour: str) -> None:
         # Pushed back a little in depth, so that the moving robot covers it without flicker.
         behind = {"polygonOffset": True, "polygonOffsetFactor": 1.0, "polygonOffsetUnits": 2.0}
-        self._draw_bodies(name, self.robot.bodies_at(configuration), colour, SOLID, **behind)
+        self.folders.append((name, colour))
+        shades, slabs = link_shades(self.robot, colour), (SOLID, STILL_JOINTS)
+        place_robot(
+            self.root[name], self.robot, configuration, self.embedding, shades, slabs, **behind
+        )
 
     def draw_motion(self, trajectory: Trajectory) -> None:
-        n = self.world.dimension
-        corners = _simplified(trajectory.configurations[:, :n])
+        corners = _simplified(followed_points(self.robot, trajectory.configurations))
         self.folders.append(("path", colours.PATH))
         radius = path_radius(self.robot.parts, self.size)
         self._draw_tube("path", self.embedding.points(corners), colours.PATH, radius)
-        fixed = np.eye(n) if self.robot.orientation is None else self.robot.orientation
-        parts = [part.transform(fixed, np.zeros(n)) for part in self.robot.parts]
-        self._draw_bodies("robot", parts, colours.ROBOT, ABOVE)
-        animate(self.root["robot"], trajectory, self.embedding)
+        self.folders.append(("robot", colours.ROBOT))
+        shades, slabs = link_colours(self.robot), (ABOVE, JOINTS)
+        nodes = hang_robot(self.root["robot"], self.robot, self.embedding, shades, slabs)
+        self.links = list(shades.items()) if self.robot.joints else []
+        animate(nodes, self.robot, trajectory, self.embedding)
 
     def draw_roadmap(self, roadmap: RoadmapGraph, visible: bool) -> None:
         points = self.embedding.points(roadmap.configurations[:, : self.world.dimension])
@@ -156,7 +176,7 @@ class _SceneBuilder:
             look = {"opacity": 0.3, "depthWrite": False, "side": BACK_SIDE}
         self._draw_bodies("arena", self.world.arenas, colours.ARENA, FLOOR, **look)
         if self.world.dimension == 2:
-            for arena, name in _named(self.world.arenas):
+            for arena, name in named(self.world.arenas, set()):
                 ring = self.embedding.points(outline(arena), FLOOR)
                 closed = np.concatenate([ring, ring[:1]])
                 self._draw_tube(
@@ -174,7 +194,7 @@ class _SceneBuilder:
     ) -> None:
         self.folders.append((folder, colour))
         shared = meshcat_shapes.material(colour, **look)
-        for body, name in _named(bodies):
+        for body, name in named(bodies, set()):
             node = self.root[f"{folder}/{name}"]
             node.set_object(meshcat_shapes.unit_shape(self.world.dimension), shared)
             node.set_transform(self.embedding.matrix(body, slab))
@@ -185,21 +205,6 @@ class _SceneBuilder:
         self.root[path].set_object(
             meshcat_shapes.tube(points, radius), meshcat_shapes.material(colour)
         )
-
-
-def _named(bodies: Iterable[Ellipsoid]) -> list[tuple[Ellipsoid, str]]:
-    """Return each body with a name that is unique in its folder and holds no slash."""
-    taken: set[str] = set()
-    named = []
-    for body in bodies:
-        plain = (body.name or "body").replace("/", "-")
-        name, count = plain, 1
-        while name in taken:
-            count += 1
-            name = f"{plain} ({count})"
-        taken.add(name)
-        named.append((body, name))
-    return named
 
 
 def _still_points(scenario: Scenario) -> NDArray[np.float64]:

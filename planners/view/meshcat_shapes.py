@@ -56,11 +56,11 @@ def unit_shape(dimension: int) -> Any:
     return _divided(Sphere(1.0), widthSegments=64, heightSegments=32)
 
 
-def tube(points: NDArray[np.float64], radius: float) -> Any:
+def tube(points: NDArray[np.float64], radius: float, sides: int = 8) -> Any:
     """Return a tube around a polyline (k, 3): three.js draws lines one pixel wide only."""
     from meshcat.geometry import TriangularMeshGeometry
 
-    return TriangularMeshGeometry(*triangles(tube_patches(points, radius, sides=8)))
+    return TriangularMeshGeometry(*triangles(tube_patches(points, radius, sides)))
 
 
 def segments(ends: NDArray[np.float64], colour: str) -> Any:

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from ellipsoid_planning.robots.joint import CONTINUOUS, REVOLUTE
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
+    from ellipsoid_planning.robots import Robot
+
+MOST_TURN = 0.3  # of a joint between two samples [rad]
+
 
 class InterpolatedSpace(Protocol):
     """What a trajectory needs of a `CSpace`: OMPL's metric and OMPL's interpolation."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that moves."""
+        ...
 
     def distance(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
         """Return OMPL's distance of two configurations (d,)."""
@@ -68,7 +80,8 @@ def follow(
 ) -> Trajectory:
     """Follow a path (k, d), interpolating exactly as OMPL does.
 
-    Each motion gets its share of about `samples` samples by its length in OMPL's metric.
+    Each motion gets its share of about `samples` samples by its length in OMPL's metric, and
+    more where a joint turns far in it.
     """
     corners = np.atleast_2d(np.asarray(configurations, dtype=float))
     lengths = [space.distance(first, second) for first, second in pairwise(corners)]
@@ -76,6 +89,7 @@ def follow(
     points, travelled = [corners[0]], [0.0]
     for (first, second), length in zip(pairwise(corners), lengths, strict=True):
         steps = max(1, round(samples * length / total)) if total > 0.0 else 1
+        steps = max(steps, math.ceil(_most_turn(space.robot, second - first) / MOST_TURN))
         begin = travelled[-1]
         for step in range(1, steps):
             points.append(np.asarray(space.interpolate(first, second, step / steps)))
@@ -83,3 +97,14 @@ def follow(
         points.append(second)
         travelled.append(begin + length)
     return Trajectory(np.array(points), np.array(travelled))
+
+
+def _most_turn(robot: Robot, difference: NDArray[np.float64]) -> float:
+    """The farthest that a joint about an axis may turn between configurations so different.
+
+    A joint with limits can go more than half a turn the long way, which a drawing that takes
+    the shortest way from sample to sample would not follow.
+    """
+    turning = {joint.name for joint in robot.joints if joint.type in (REVOLUTE, CONTINUOUS)}
+    turns = [abs(difference[robot.joint_slices[name]][0]) for name in turning]
+    return float(max(turns, default=0.0))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.kernels import layout, placement, validity
 from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -19,9 +20,9 @@ class Contact:
     """One reason why a configuration is not valid.
 
     Attributes:
-        kind: 'obstacle', 'arena' or 'bounds'.
-        part: name of the robot's part; empty for 'bounds'.
-        body: name of the obstacle or arena; the coordinate for 'bounds'.
+        kind: 'obstacle', 'arena', 'bounds', or of articulated robots 'self' or 'limits'.
+        part: name of the robot's part; empty for 'bounds' and 'limits'.
+        body: name of the obstacle, arena, other part or joint; the coordinate for 'bounds'.
         depth: how much is missing, in the scenario's unit: the part would have to move at most
             that far (obstacle), or sticks out that far (arena, bounds), the clearance included.
         message: the whole in one sentence.
@@ -54,6 +55,13 @@ def body_contacts(
     """Parts that meet an obstacle, leave an arena, or come closer than the clearance."""
     placed = np.empty((len(robot.parts), layout.PLACED))
     placement.place(scene, *pose, placed)
+    return placed_contacts(world, robot, scene, placed, configuration)
+
+
+def placed_contacts(
+    world: World, robot: Robot, scene: Array, placed: Array, configuration: Array
+) -> list[Contact]:
+    """:func:`body_contacts` of parts that are placed already, rows (k, PLACED)."""
     gaps = np.empty((len(robot.parts), len(world.obstacles)))
     validity.obstacle_gaps(scene, placed, gaps)
     inside = np.empty((len(robot.parts), len(world.arenas)), dtype=np.bool_)
@@ -75,9 +83,7 @@ def body_contacts(
     return contacts
 
 
-def _sticks_out(
-    world: World, robot: RigidRobot, configuration: Array, part: int, arena: int
-) -> float:
+def _sticks_out(world: World, robot: Robot, configuration: Array, part: int, arena: int) -> float:
     """Largest u·x of the part beyond the arena's support, over outward normals u (sampled)."""
     body, outer = robot.bodies_at(configuration)[part], world.arenas[arena]
     normals = outer.surface_points(2000) - outer.centre

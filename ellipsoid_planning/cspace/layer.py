@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
-from ellipsoid_planning.kernels import layout, lines, placement, whitening
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.kernels import lines, whitening
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -27,15 +26,22 @@ class Layer:
     """
 
     def __init__(
-        self, world: World, robot: RigidRobot, scene: Array, rotation: Array, quaternion: Array
+        self,
+        world: World,
+        scene: Array,
+        rotation: Array,
+        placed: Array,
+        bodies: tuple[Ellipsoid, ...],
     ) -> None:
-        """Prepare the layer of ``rotation`` (n, n), whose quaternion (4,) is given too."""
+        """Prepare the layer of ``rotation`` (n, n).
+
+        ``placed`` (k, PLACED) and ``bodies`` (k,) are the robot's parts with its base at 0.
+        """
         self.rotation = rotation
-        self._world, self._robot, self._scene = world, robot, scene
-        parts, bodies = len(robot.parts), len(world.obstacles) + len(world.arenas)
-        self._placed = np.empty((parts, layout.PLACED))
-        placement.place(scene, 0.0, 0.0, 0.0, *quaternion, self._placed)
-        rows = min(max(parts * bodies, 1), _MOST_WHITENED)
+        self._world, self._scene = world, scene
+        self._placed, self._bodies = placed, bodies
+        others = len(world.obstacles) + len(world.arenas)
+        rows = min(max(len(bodies) * others, 1), _MOST_WHITENED)
         self._table = np.empty((rows, whitening.WHITEN))
         self._keys = np.full(rows, -1, dtype=np.int64)
         self._scratch = np.empty((1, 9))
@@ -85,12 +91,11 @@ class Layer:
     def _pairs(self, bodies: tuple[Ellipsoid, ...]) -> tuple[tuple[Ellipsoid, Ellipsoid], ...]:
         n = self._world.dimension
         pairs = []
-        for part in self._robot.parts:
-            offset = self.rotation @ part.centre
-            turned = Ellipsoid(
-                np.zeros(n), self.rotation @ part.rotation, part.semi_axes, part.name
-            )
+        for part in self._bodies:
+            turned = Ellipsoid(np.zeros(n), part.rotation, part.semi_axes, part.name)
             for body in bodies:
-                moved = Ellipsoid(body.centre - offset, body.rotation, body.semi_axes, body.name)
+                moved = Ellipsoid(
+                    body.centre - part.centre, body.rotation, body.semi_axes, body.name
+                )
                 pairs.append((moved, turned))
         return tuple(pairs)

@@ -22,10 +22,9 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
-def _scale(world: World, robot: RigidRobot, *bodies: Array) -> float:
+def _scale(world: World, reach: float, *bodies: Array) -> float:
     corner = np.linalg.norm(np.maximum(np.abs(world.low), np.abs(world.high)))
-    own = float(corner) + max(farthest(part) for part in robot.parts)
-    return max(own, *map(farthest_of, bodies))
+    return max(float(corner) + reach, *map(farthest_of, bodies))
 
 
 def _bounds(world: World) -> tuple[Array, Array]:
@@ -40,10 +39,20 @@ def pack_scene(world: World, robot: RigidRobot, clearance: float) -> Array:
     Raises:
         GeometryError: if the clearance leaves nothing of an arena.
     """
+    parts = np.array([part_row(part) for part in robot.parts])
+    return pack_parts(world, parts, max(farthest(part) for part in robot.parts), clearance)
+
+
+def pack_parts(world: World, parts: Array, reach: float, clearance: float) -> Array:
+    """:func:`pack_scene` of rows of parts (k, PART), none farther than ``reach`` from the base.
+
+    Raises:
+        GeometryError: if the clearance leaves nothing of an arena.
+    """
     header = np.zeros(layout.HEADER)
     header[layout.OBSTACLE_COUNT] = len(world.obstacles)
     header[layout.ARENA_COUNT] = len(world.arenas)
-    header[layout.PART_COUNT] = len(robot.parts)
+    header[layout.PART_COUNT] = len(parts)
     header[layout.DIMENSION] = world.dimension
     header[layout.CLEARANCE] = clearance
     low, high = _bounds(world)
@@ -53,8 +62,7 @@ def pack_scene(world: World, robot: RigidRobot, clearance: float) -> Array:
     obstacles = body_rows(world.obstacles, grown_axes(axes, clearance))
     shrunk = [shrunk_axes(body.semi_axes, clearance) for body in world.arenas]
     arenas = body_rows(world.arenas, np.array(shrunk))
-    header[layout.SCALE] = _scale(world, robot, obstacles, arenas)
-    parts = np.array([part_row(part) for part in robot.parts])
+    header[layout.SCALE] = _scale(world, reach, obstacles, arenas)
     tables = (obstacles, arenas, parts, bounding_tree(obstacles))
     scene = np.concatenate([header, *(table.ravel() for table in tables)])
     scene.setflags(write=False)

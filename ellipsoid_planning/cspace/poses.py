@@ -22,7 +22,7 @@ from ellipsoid_planning.robots.rigid import RigidRobot
 Array = NDArray[np.float64]
 
 # Beyond this product OMPL takes two quaternions for equal and keeps the first.
-_SAME_QUATERNION = 1.0 - 1e-9
+SAME_QUATERNION = 1.0 - 1e-9
 
 
 def _checked(robot: RigidRobot, configurations: ArrayLike) -> Array:
@@ -91,7 +91,7 @@ def interpolate(robot: RigidRobot, first: ArrayLike, second: ArrayLike, s: float
         out[2] = normalised_heading(a[2] + s * turn)
         return out
     product = float(a[3:] @ b[3:])
-    if abs(product) > _SAME_QUATERNION:
+    if abs(product) > SAME_QUATERNION:
         out[3:] = a[3:]
         return out
     angle = math.acos(abs(product))

@@ -10,17 +10,38 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.cspace.contacts import Contact, body_contacts, bound_contacts
 from ellipsoid_planning.cspace.layer import Layer
 from ellipsoid_planning.cspace.packing import pack_scene
-from ellipsoid_planning.cspace.poses import interpolate, poses, rotation_quaternion
+from ellipsoid_planning.cspace.poses import (
+    configurations_from_poses,
+    interpolate,
+    poses,
+    rotation_quaternion,
+)
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.kernels import layout, motion, motion_clearance, validity
+from ellipsoid_planning.kernels import layout, motion, motion_clearance, placement, validity
 from ellipsoid_planning.metric import path_length
 from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
 
 _CLEARANCE_SAMPLES = 33
 _CLEARANCE_PROOFS = 60
+
+
+def check_clearance(world: World, robot: Robot, clearance: float) -> None:
+    """Check that a robot fits a world's dimension, and a clearance for its range.
+
+    Raises:
+        GeometryError: if not.
+    """
+    if world.dimension != robot.dimension:
+        raise GeometryError(
+            f"expected a robot of the world's dimension {world.dimension}, "
+            f"got dimension {robot.dimension}"
+        )
+    if not 0.0 <= clearance < np.inf:
+        raise GeometryError(f"expected a clearance of at least 0, got {clearance}")
 
 
 class CSpace:
@@ -45,13 +66,7 @@ class CSpace:
             GeometryError: if the dimensions differ or the clearance is negative, not finite, or
                 leaves nothing of an arena.
         """
-        if world.dimension != robot.dimension:
-            raise GeometryError(
-                f"expected a robot of the world's dimension {world.dimension}, "
-                f"got dimension {robot.dimension}"
-            )
-        if not 0.0 <= clearance < np.inf:
-            raise GeometryError(f"expected a clearance of at least 0, got {clearance}")
+        check_clearance(world, robot, clearance)
         self.world, self.robot = world, robot
         self.clearance_required = float(clearance)
         self.scene = pack_scene(world, robot, self.clearance_required)
@@ -74,6 +89,10 @@ class CSpace:
     def poses(self, configurations: ArrayLike) -> Array:
         """Spatial poses (m, 7) of configurations (m, d) or (d,); see :mod:`cspace.poses`."""
         return poses(self.robot, configurations)
+
+    def configurations(self, rows: Array) -> Array:
+        """Configurations (m, d) of spatial poses (m, 7)."""
+        return configurations_from_poses(self.robot, rows)
 
     def is_valid(self, configuration: ArrayLike) -> bool:
         """Whether a configuration (d,) is provably free, in bounds and at the clearance."""
@@ -164,5 +183,7 @@ class CSpace:
                 f"expected a rotation ({n}, {n}) or a configuration of "
                 f"{self.robot.configuration_size} numbers, got shape {given.shape}"
             )
-        quaternion = rotation_quaternion(rotation)
-        return Layer(self.world, self.robot, self.scene, rotation, quaternion)
+        placed = np.empty((len(self.robot.parts), layout.PLACED))
+        placement.place(self.scene, 0.0, 0.0, 0.0, *rotation_quaternion(rotation), placed)
+        bodies = tuple(part.transform(rotation, np.zeros(n)) for part in self.robot.parts)
+        return Layer(self.world, self.scene, rotation, placed, bodies)

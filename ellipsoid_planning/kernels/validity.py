@@ -170,10 +170,16 @@ def clearance_of(scene, x, y, z, qx, qy, qz, qw):
     Infinite in an empty world. A negative value is minus the penetration along one direction, or
     −1 outside an arena.
     """
-    obstacles, arenas = obstacle_rows(scene), arena_rows(scene)
-    parts, tree = part_rows(scene), tree_rows(scene)
     placed = new_placed(scene)
     place(scene, x, y, z, qx, qy, qz, qw, placed)
+    return placed_clearance(scene, placed)
+
+
+@kernel
+def placed_clearance(scene, placed):
+    """:func:`clearance_of` a robot whose parts are placed already."""
+    obstacles, arenas = obstacle_rows(scene), arena_rows(scene)
+    parts, tree = part_rows(scene), tree_rows(scene)
     best = math.inf
     for i in range(placed.shape[0]):
         for a in range(arenas.shape[0]):

@@ -1,0 +1,58 @@
+"""What is wrong with an articulated robot's configuration: joints out of limits, self-collision."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.cspace.contacts import Contact
+from ellipsoid_planning.kernels import kinematics as tables
+from ellipsoid_planning.kernels import layout, self_collision, separation
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
+
+Array = NDArray[np.float64]
+
+LIMIT_TOLERANCE = 1e-9
+
+
+def limit_contacts(robot: ArticulatedRobot, configuration: Array) -> list[Contact]:
+    """Joints whose values in a configuration (d,) are out of their limits."""
+    contacts = []
+    for joint in robot.moving_joints:
+        if joint.type not in LIMITED:
+            continue
+        value = float(configuration[robot.joint_slices[joint.name]][0])
+        depth = max(joint.lower - value, value - joint.upper)
+        if depth > LIMIT_TOLERANCE:
+            scale, unit = (math.degrees(1.0), " deg") if joint.type == REVOLUTE else (1.0, "")
+            text = (
+                f"joint {joint.name!r} = {value * scale:g}{unit} is out of its limits "
+                f"[{joint.lower * scale:g}, {joint.upper * scale:g}]"
+            )
+            contacts.append(Contact("limits", "", joint.name, depth, text))
+    return contacts
+
+
+def self_contacts(
+    robot: ArticulatedRobot, scene: Array, kinematics: Array, frames: Array, placed: Array
+) -> list[Contact]:
+    """Pairs of placed parts that may not meet and are not proved apart."""
+    pairs = tables.pair_matrix(kinematics)
+    shapes, owners = tables.shape_rows(kinematics), tables.owners_of(kinematics)
+    required = 2.0 * layout.ROUNDING * float(scene[layout.SCALE])
+    body = self_collision.new_body()
+    contacts = []
+    for i, first in enumerate(robot.parts):
+        self_collision.as_body(shapes, i, frames[int(owners[i])], placed, body)
+        for j in range(i + 1, len(robot.parts)):
+            if pairs[i, j] == 0.0:
+                continue
+            second = robot.parts[j]
+            gap = separation.separation(body, 0, placed, j, 0.5, math.inf, separation.CONVERGE)[0]
+            if not gap > required:
+                text = f"part {first.name!r} meets part {second.name!r} (depth {-gap:.6g})"
+                contacts.append(Contact("self", first.name, second.name, float(-gap), text))
+    return contacts

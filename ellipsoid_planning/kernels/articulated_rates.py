@@ -1,0 +1,181 @@
+"""Motions of articulated robots as rates: what each joint does while s runs from 0 to 1.
+
+The motion is OMPL's interpolation of a compound space: positions and bounded joints linear,
+continuous joints and planar headings the shorter way, rotations along the shorter arc.
+"""
+
+import math
+
+from .compile import kernel
+from .kinematics import (
+    BALL,
+    CONTINUOUS,
+    JOINT_KIND,
+    JOINT_PARENT,
+    JOINT_REACH,
+    JOINT_TRANSLATION,
+    JOINT_VALUE,
+    PRISMATIC,
+    joint_rows,
+)
+from .layout import DIMENSION
+from .linear import norm, product
+from .motion import SMALL_ROTATION
+
+# Below this rotation OMPL surely keeps the first orientation until the end.
+HELD_ROTATION = 6e-5
+# From this turn on rounding may decide which way OMPL turns.
+_HALF_TURN = math.pi - 1e-8
+# Columns of the bounds on a body's motion: angular rate (signed in the plane), speed and
+# acceleration of its frame's origin.
+BOUND_SPIN = 0
+BOUND_SPEED = 1
+BOUND_ACCELERATION = 2
+BOUNDS = 3
+
+
+@kernel
+def _rotation_rate(first, last, v, rates, at):
+    """Write the rotation vector between the quaternions at ``v`` to ``rates``: its angle."""
+    x, y, z, w = product(
+        last[v], last[v + 1], last[v + 2], last[v + 3],
+        -first[v], -first[v + 1], -first[v + 2], first[v + 3],
+    )  # fmt: skip
+    if w < 0.0:
+        x, y, z, w = -x, -y, -z, -w
+    sine = norm(x, y, z)
+    angle = 2.0 * math.atan2(sine, w)
+    scale = 0.0 if sine <= 1e-15 else angle / sine
+    rates[at], rates[at + 1], rates[at + 2] = scale * x, scale * y, scale * z
+    return 0.0 if sine <= 1e-15 else angle
+
+
+@kernel
+def set_rates(scene, kinematics, first, last, rates):
+    """Write the rates of the motion between two rows: (number of half turns, small, unsure).
+
+    At a half turn rounding decides which way OMPL turns. ``small`` counts the rotations in space
+    that OMPL may hold, ``unsure`` those of them for which that is not certain.
+    """
+    joints = joint_rows(kinematics)
+    ties, small, unsure = 0, 0, 0
+    for k in range(3):
+        rates[k] = last[k] - first[k]
+    rates[6] = 0.0
+    angle = _rotation_rate(first, last, 3, rates, 3)
+    ties += norm(rates[3], rates[4], rates[5]) > _HALF_TURN
+    if scene[DIMENSION] == 3.0 and 0.0 < angle < SMALL_ROTATION:
+        small += 1
+        unsure += angle > HELD_ROTATION
+    for j in range(joints.shape[0]):
+        v, kind = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND])
+        if kind == BALL:
+            angle = _rotation_rate(first, last, v, rates, v)
+            rates[v + 3] = 0.0
+            ties += norm(rates[v], rates[v + 1], rates[v + 2]) > _HALF_TURN
+            if 0.0 < angle < SMALL_ROTATION:
+                small += 1
+                unsure += angle > HELD_ROTATION
+            continue
+        rates[v] = last[v] - first[v]
+        if kind == CONTINUOUS:
+            if abs(rates[v]) > math.pi:
+                rates[v] -= math.copysign(2.0 * math.pi, rates[v])
+            ties += abs(rates[v]) > _HALF_TURN
+    return ties, small, unsure
+
+
+@kernel
+def _reverse(rates, at):
+    """Turn the other way round by the rotation vector at ``at``."""
+    angle = norm(rates[at], rates[at + 1], rates[at + 2])
+    scale = (angle - 2.0 * math.pi) / angle
+    for k in range(3):
+        rates[at + k] *= scale
+
+
+@kernel
+def turn_other_way(kinematics, rates):
+    """Make whatever turns by half a turn go the other way round: how many there were."""
+    joints = joint_rows(kinematics)
+    count = 0
+    if norm(rates[3], rates[4], rates[5]) > _HALF_TURN:
+        _reverse(rates, 3)
+        count += 1
+    for j in range(joints.shape[0]):
+        v, kind = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND])
+        if kind == BALL and norm(rates[v], rates[v + 1], rates[v + 2]) > _HALF_TURN:
+            _reverse(rates, v)
+            count += 1
+        elif kind == CONTINUOUS and abs(rates[v]) > _HALF_TURN:
+            rates[v] -= math.copysign(2.0 * math.pi, rates[v])
+            count += 1
+    return count
+
+
+@kernel
+def keep_rates(kinematics, small, rates):
+    """Set to 0 the small rotations in space (or, if not ``small``, everything else)."""
+    joints = joint_rows(kinematics)
+    tiny = norm(rates[3], rates[4], rates[5]) < SMALL_ROTATION
+    for k in range(3):
+        if small:
+            rates[k] = 0.0
+        if tiny != small:
+            rates[3 + k] = 0.0
+    for j in range(joints.shape[0]):
+        v = int(joints[j, JOINT_VALUE])
+        if int(joints[j, JOINT_KIND]) != BALL:
+            if small:
+                rates[v] = 0.0
+            continue
+        tiny = norm(rates[v], rates[v + 1], rates[v + 2]) < SMALL_ROTATION
+        if tiny != small:
+            for k in range(3):
+                rates[v + k] = 0.0
+
+
+@kernel
+def set_bounds(scene, kinematics, start, rates, with_base, bounds):
+    """Write what bounds the motion of each body's points to ``bounds`` (B, BOUNDS).
+
+    A body whose rotation is a product of rotations at constant rates α_k about axes fixed in each
+    other's frames has |ω̇ + ω×(ω× ·)| ≤ (Σ|α_k|)², in the plane (Σα_k)². So a point at r from the
+    origin of its body's frame accelerates by at most a + w²|r|, with a summed up along the tree.
+    Without ``with_base`` the base is held, which changes nothing between the robot's own parts.
+    """
+    joints = joint_rows(kinematics)
+    planar = scene[DIMENSION] == 2.0
+    spin, speed = 0.0, 0.0
+    if with_base:
+        spin = rates[5] if planar else norm(rates[3], rates[4], rates[5])
+        speed = norm(rates[0], rates[1], rates[2])
+    bounds[0, BOUND_SPIN], bounds[0, BOUND_SPEED], bounds[0, BOUND_ACCELERATION] = spin, speed, 0.0
+    for j in range(joints.shape[0]):
+        p, b = int(joints[j, JOINT_PARENT]), j + 1
+        v, kind, t = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND]), JOINT_TRANSLATION
+        spin = bounds[p, BOUND_SPIN]
+        arm = norm(joints[j, t], joints[j, t + 1], joints[j, t + 2])
+        slide = 0.0
+        if kind == PRISMATIC:
+            slide = abs(rates[v])
+            arm += max(abs(start[v]), abs(start[v] + rates[v]))
+        bounds[b, BOUND_SPEED] = bounds[p, BOUND_SPEED] + abs(spin) * arm + slide
+        bounds[b, BOUND_ACCELERATION] = (
+            bounds[p, BOUND_ACCELERATION] + spin * spin * arm + 2.0 * abs(spin) * slide
+        )
+        if kind == BALL:
+            spin += norm(rates[v], rates[v + 1], rates[v + 2])
+        elif kind != PRISMATIC:
+            spin += rates[v] if planar else abs(rates[v])
+        bounds[b, BOUND_SPIN] = spin
+
+
+@kernel
+def largest_reach(kinematics):
+    """The largest reach of a joint; 0 without joints."""
+    joints = joint_rows(kinematics)
+    reach = 0.0
+    for j in range(joints.shape[0]):
+        reach = max(reach, joints[j, JOINT_REACH])
+    return reach

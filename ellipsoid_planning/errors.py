@@ -14,6 +14,19 @@ class GeometryError(EllipsoidPlanningError, ValueError):
     """Numbers that describe no ellipsoid, robot or world, or an empty construction."""
 
 
+class RobotError(GeometryError):
+    """Links and joints that make no robot.
+
+    Attributes:
+        path: where in the robot the fault is, such as ("joints", 1, "parent"); empty for the
+            robot as a whole.
+    """
+
+    def __init__(self, problem: str, path: tuple[str | int, ...] = ()) -> None:
+        super().__init__(problem)
+        self.path = path
+
+
 class ScenarioError(EllipsoidPlanningError):
     """A scenario that cannot be read, or that asks for something impossible.
 

@@ -91,6 +91,17 @@ def form_of_heading(yaw: float) -> dict[str, Any]:
     return {"yaw_deg": math.degrees(yaw)}
 
 
+def degrees_from_radians(angle: float) -> float:
+    """Return degrees that `math.radians` makes the angle [rad] again, turns included.
+
+    It does so to the last bit wherever degrees in double precision can.
+    """
+    for degrees in _degree_candidates(angle):
+        if math.radians(degrees) == angle:
+            return degrees
+    return math.degrees(angle)
+
+
 def form_of_rotation(rotation: NDArray[np.float64]) -> dict[str, Any]:
     """Return the form that reads back as a rotation (n, n): yaw_deg in 2-D, quaternion in 3-D."""
     if len(rotation) == 3:

@@ -9,10 +9,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ellipsoid_planning.errors import ScenarioError
-from ellipsoid_planning.geometry.orientation import normalised_heading
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.scenario_origin import Origin
 from ellipsoid_planning.world import World
@@ -28,9 +28,10 @@ class Scenario:
     Attributes:
         name: a short name.
         world: obstacles, arenas and bounds, in the world frame.
-        robot: the robot, in its base frame.
-        start, goal: configurations (d,), see `RigidRobot`; headings [rad] are brought into
-            [-pi, pi) and quaternions (x, y, z, w) to unit length.
+        robot: the robot, in its base frame, or in the frames of its links.
+        start, goal: configurations (d,), see `RigidRobot` and `ArticulatedRobot`; headings
+            and values of continuous joints [rad] are brought into [-pi, pi), quaternions
+            (x, y, z, w) to unit length, and joints must keep their limits.
         clearance: the distance that every state and motion keeps, at least 0.
         planner: empty, or a planner's ``name`` and its parameters.
         description: what the scenario is about.
@@ -43,7 +44,7 @@ class Scenario:
 
     name: str
     world: World
-    robot: RigidRobot
+    robot: RigidRobot | ArticulatedRobot
     start: NDArray[np.float64]
     goal: NDArray[np.float64]
     clearance: float = 0.0
@@ -52,6 +53,8 @@ class Scenario:
     origin: Origin = field(default_factory=Origin, repr=False)
 
     def __post_init__(self) -> None:
+        from ellipsoid_planning.scenario_configuration import normalised_configuration
+
         if self.world.dimension != self.robot.dimension:
             raise self.origin.error(
                 ("robot",),
@@ -62,28 +65,12 @@ class Scenario:
             problem = f"expected a finite clearance of zero or more, got {self.clearance}"
             raise self.origin.error(("clearance",), problem)
         for which in ("start", "goal"):
-            configuration = self._normalised(getattr(self, which), which)
+            given = getattr(self, which)
+            configuration = normalised_configuration(self.robot, given, which, self.origin)
             configuration.setflags(write=False)
             object.__setattr__(self, which, configuration)
         object.__setattr__(self, "clearance", float(self.clearance))
         object.__setattr__(self, "planner", MappingProxyType(dict(self.planner)))
-
-    def _normalised(self, configuration: ArrayLike, which: str) -> NDArray[np.float64]:
-        from ellipsoid_planning.orientation_forms import unit_quaternion
-
-        values = np.array(configuration, dtype=float)
-        size = self.robot.configuration_size
-        if values.shape != (size,) or not np.all(np.isfinite(values)):
-            problem = f"expected a configuration of {size} finite numbers, got {values.tolist()}"
-            raise self.origin.error((which,), problem)
-        if self.robot.rotates and self.dimension == 2:
-            values[2] = normalised_heading(float(values[2]))
-        elif self.robot.rotates:
-            try:
-                values[3:] = unit_quaternion(values[3:])
-            except ValueError as error:
-                raise self.origin.error((which,), str(error)) from None
-        return values
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "planner": dict(self.planner)}
@@ -103,9 +90,13 @@ class Scenario:
 
     def cspace(self) -> CSpace:
         """Return the configuration space of the robot in the world, with the clearance."""
-        from ellipsoid_planning.cspace.space import CSpace
+        if isinstance(self.robot, RigidRobot):
+            from ellipsoid_planning.cspace.space import CSpace
 
-        return CSpace(self.world, self.robot, self.clearance)
+            return CSpace(self.world, self.robot, self.clearance)
+        from ellipsoid_planning.cspace.of import cspace_of
+
+        return cspace_of(self.world, self.robot, self.clearance)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the scenario in the file format, complete, as data for JSON or YAML.

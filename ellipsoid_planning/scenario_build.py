@@ -1,37 +1,28 @@
 """From the validated format to worlds, robots and configurations.
 
-Checks what depends on the dimension: vector lengths and orientation forms.
+Checks what depends on the dimension and on the robot; see also `scenario_entries`,
+`scenario_robot` and `scenario_joints`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
-from ellipsoid_planning.orientation_forms import (
-    PLANAR_FORMS,
-    SPATIAL_FORMS,
-    heading_from_degrees,
-    quaternion_from_form,
-    rotation_from_form,
-)
+from ellipsoid_planning.orientation_forms import heading_from_degrees
+from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.rigid import RigidRobot
-from ellipsoid_planning.scenario_format import (
-    Body,
-    Bounds,
-    Orientation,
-    Pose,
-    Robot,
-    ScenarioModel,
-)
+from ellipsoid_planning.scenario_entries import Entries
+from ellipsoid_planning.scenario_format import Bounds, ScenarioModel
+from ellipsoid_planning.scenario_format_robot import Pose
+from ellipsoid_planning.scenario_joints import joint_values
 from ellipsoid_planning.scenario_origin import Origin, Path
 from ellipsoid_planning.scenario_problems import scenario_error, shown
+from ellipsoid_planning.scenario_robot import robot_of
 from ellipsoid_planning.world import World
 
 SAME_ORIENTATION = 1e-12
@@ -50,26 +41,24 @@ def scenario_parts(data: Any, origin: Origin) -> dict[str, Any]:
         model = ScenarioModel.model_validate(dict(data))
     except ValidationError as error:
         raise scenario_error(error, origin) from None
-    return _Builder(model.dimension, origin).build(model)
+    return _Builder(Entries(model.dimension, origin)).build(model)
 
 
 class _Builder:
-    """Builds the objects of one document and remembers orientations as they were written."""
+    """Builds the objects of one document."""
 
-    def __init__(self, dimension: int, origin: Origin) -> None:
-        self._dimension = dimension
-        self._origin = origin
-        self._orientations: list[tuple[object, Mapping[str, Any]]] = []
+    def __init__(self, entries: Entries) -> None:
+        self._entries = entries
 
     def build(self, model: ScenarioModel) -> dict[str, Any]:
+        entries = self._entries
         low, high = self._box(model.bounds)
-        obstacles = self._bodies(model.obstacles, ("obstacles",), "obstacle")
-        arenas = self._bodies(model.arena, ("arena",), "arena")
-        robot = self._robot(model.robot, model.start)
-        start = self._configuration(model.start, robot, ("start",))
-        goal = self._configuration(model.goal, robot, ("goal",))
-        if not robot.rotates:
-            self._check_same_orientation(model.start, model.goal)
+        obstacles = entries.bodies(model.obstacles, ("obstacles",), "obstacle")
+        arenas = entries.bodies(model.arena, ("arena",), "arena")
+        robot = robot_of(entries, model.robot, model.start)
+        start = self._configuration(model.start, robot, "start")
+        goal = self._configuration(model.goal, robot, "goal")
+        self._check_same_base(model.start, model.goal, robot)
         return {
             "name": model.name,
             "description": model.description,
@@ -79,107 +68,72 @@ class _Builder:
             "start": start,
             "goal": goal,
             "planner": model.planner.model_dump() if model.planner else {},
-            "origin": Origin(
-                self._origin.file,
-                self._origin.values,
-                self._origin.keys,
-                tuple(self._orientations),
-            ),
+            "origin": entries.origin(),
         }
 
     def _box(self, bounds: Bounds) -> tuple[list[float], list[float]]:
-        low = self._vector(bounds.low, ("bounds", "low"))
-        high = self._vector(bounds.high, ("bounds", "high"))
+        low = self._entries.vector(bounds.low, ("bounds", "low"))
+        high = self._entries.vector(bounds.high, ("bounds", "high"))
         for index, (below, above) in enumerate(zip(low, high, strict=True)):
             if not below < above:
-                raise self._origin.error(
+                raise self._entries.error(
                     ("bounds", "low", index),
                     f"expected low < high, got low {below:g} and high {above:g}; "
                     "exchange or correct them",
                 )
         return low, high
 
-    def _vector(self, values: Sequence[float], path: Path) -> list[float]:
-        if len(values) != self._dimension:
-            raise self._origin.error(
-                path,
-                f"expected {self._dimension} numbers because the dimension is {self._dimension}, "
-                f"got {len(values)}; correct this or the dimension",
-            )
-        return [float(value) for value in values]
+    def _configuration(
+        self, pose: Pose, robot: RigidRobot | ArticulatedRobot, which: str
+    ) -> NDArray[np.float64]:
+        base = [] if _stands(robot) else self._base(pose, robot, (which,))
+        return np.array([*base, *joint_values(self._entries, robot, pose.joints, which)])
 
-    def _bodies(self, bodies: Sequence[Body], path: Path, kind: str) -> tuple[Ellipsoid, ...]:
-        return tuple(
-            self._body(body, (*path, index), body.name or f"{kind} {index + 1}")
-            for index, body in enumerate(bodies)
-        )
-
-    def _body(self, body: Body, path: Path, name: str) -> Ellipsoid:
-        semi_axes = self._vector(body.semi_axes, (*path, "semi_axes"))
-        position = [0.0] * self._dimension
-        if body.position is not None:
-            position = self._vector(body.position, (*path, "position"))
-        rotation, written = self._rotation(body.orientation, path)
-        ellipsoid = Ellipsoid.from_semi_axes(semi_axes, position, rotation, name)
-        self._orientations += [(ellipsoid, written)] if written else []
-        return ellipsoid
-
-    def _robot(self, robot: Robot, start: Pose) -> RigidRobot:
-        parts = self._bodies(robot.parts, ("robot", "parts"), "part")
-        if robot.rotates:
-            return RigidRobot(parts)
-        rotation, written = self._rotation(start.orientation, ("start",))
-        built = RigidRobot(parts, rotates=False, orientation=rotation)
-        self._orientations += [(built.orientation, written)] if written else []
-        return built
-
-    def _configuration(self, pose: Pose, robot: RigidRobot, path: Path) -> NDArray[np.float64]:
-        position = self._vector(pose.position, (*path, "position"))
-        form, value = self._form(pose.orientation, path)
+    def _base(self, pose: Pose, robot: RigidRobot | ArticulatedRobot, path: Path) -> list[float]:
+        if pose.position is None:
+            raise self._entries.error((*path, "position"), "this key is missing; add it")
+        position = self._entries.vector(pose.position, (*path, "position"))
+        place = (*path, "orientation")
+        form, value = self._entries.form(pose.orientation, place)
         if not robot.rotates:
-            return np.array(position)
-        if self._dimension == 2:
-            return np.array([*position, heading_from_degrees(value) if form else 0.0])
-        quaternion = [0.0, 0.0, 0.0, 1.0]
-        if form:
-            quaternion = self._checked(quaternion_from_form, form, value, path).tolist()
-        return np.array([*position, *quaternion])
+            return position
+        if robot.dimension == 2:
+            return [*position, heading_from_degrees(value) if form else 0.0]
+        return [*position, *self._entries.quaternion(pose.orientation, place)]
 
-    def _check_same_orientation(self, start: Pose, goal: Pose) -> None:
-        first, _ = self._rotation(start.orientation, ("start",))
-        second, _ = self._rotation(goal.orientation, ("goal",))
+    def _check_same_base(
+        self, start: Pose, goal: Pose, robot: RigidRobot | ArticulatedRobot
+    ) -> None:
+        if robot.rotates:
+            return
+        fixed = _stands(robot)
+        if fixed and goal.position is not None:
+            self._check_same_position(start, goal)
+        if fixed and goal.orientation is None:
+            return
+        first, _ = self._entries.rotation(start.orientation, ("start", "orientation"))
+        second, _ = self._entries.rotation(goal.orientation, ("goal", "orientation"))
         if not np.max(np.abs(first - second)) <= SAME_ORIENTATION:
-            raise self._origin.error(
+            why, remedy = "robot.rotates is false", "let the robot rotate"
+            if isinstance(robot, ArticulatedRobot):
+                why, remedy = f"robot.base is {robot.base}", "make the base free"
+            raise self._entries.error(
                 ("goal", "orientation"),
-                "expected the start's orientation because robot.rotates is false, got another "
-                "one; repeat the start's, or let the robot rotate",
+                f"expected the start's orientation because {why}, got another one; repeat the "
+                f"start's, or {remedy}",
             )
 
-    def _rotation(
-        self, orientation: Orientation | None, path: Path
-    ) -> tuple[NDArray[np.float64], dict[str, Any]]:
-        """Return the rotation (n, n) and the orientation as written, empty for none."""
-        form, value = self._form(orientation, path)
-        if not form:
-            return np.eye(self._dimension), {}
-        return self._checked(rotation_from_form, form, value, path), {form: value}
-
-    def _form(self, orientation: Orientation | None, path: Path) -> tuple[str, Any]:
-        if orientation is None:
-            return "", None
-        ((form, value),) = orientation.model_dump(exclude_unset=True).items()
-        allowed = PLANAR_FORMS if self._dimension == 2 else SPATIAL_FORMS
-        if form not in allowed:
-            raise self._origin.error(
-                (*path, "orientation", form),
-                f"expected {' or '.join(allowed)} because the dimension is {self._dimension}, "
-                f"got {form}; write the orientation in one of these forms",
-                at_key=True,
+    def _check_same_position(self, start: Pose, goal: Pose) -> None:
+        first = self._entries.vector(start.position, ("start", "position"))
+        second = self._entries.vector(goal.position, ("goal", "position"))
+        if first != second:
+            raise self._entries.error(
+                ("goal", "position"),
+                f"expected the start's position {first} because robot.base is fixed, got "
+                f"{second}; repeat the start's, or leave the goal's out",
             )
-        return form, value
 
-    def _checked(self, convert: Any, form: str, value: Any, path: Path) -> NDArray[np.float64]:
-        try:
-            return np.asarray(convert(form, value))
-        except GeometryError as error:
-            raise self._origin.error((*path, "orientation", form), str(error)) from None
+
+def _stands(robot: RigidRobot | ArticulatedRobot) -> bool:
+    """Whether the base is fixed."""
+    return isinstance(robot, ArticulatedRobot) and robot.base == FIXED_BASE

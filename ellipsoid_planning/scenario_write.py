@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
-from ellipsoid_planning.orientation_forms import form_of_heading, form_of_rotation
+from ellipsoid_planning.orientation_forms import (
+    degrees_from_radians,
+    form_of_heading,
+    form_of_rotation,
+)
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.joint import PRISMATIC, REVOLUTE, Joint
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.scenario_joints import written_values
 
 if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
@@ -21,7 +29,7 @@ def scenario_document(scenario: Scenario) -> dict[str, Any]:
     Orientations come out as they were written where the body is still the one that was read;
     otherwise as yaw_deg or as a quaternion, equal to rounding.
     """
-    world, robot = scenario.world, scenario.robot
+    world = scenario.world
     document: dict[str, Any] = {
         "format": 1,
         "name": scenario.name,
@@ -30,10 +38,7 @@ def scenario_document(scenario: Scenario) -> dict[str, Any]:
         "bounds": {"low": world.low.tolist(), "high": world.high.tolist()},
         "arena": [_body(scenario, body) for body in world.arenas],
         "obstacles": [_body(scenario, body) for body in world.obstacles],
-        "robot": {
-            "rotates": robot.rotates,
-            "parts": [_body(scenario, part) for part in robot.parts],
-        },
+        "robot": _robot(scenario),
         "clearance": scenario.clearance,
         "start": _pose(scenario, scenario.start),
         "goal": _pose(scenario, scenario.goal),
@@ -52,12 +57,52 @@ def _body(scenario: Scenario, body: Ellipsoid) -> dict[str, Any]:
     }
 
 
-def _pose(scenario: Scenario, configuration: NDArray[np.float64]) -> dict[str, Any]:
-    n = scenario.dimension
+def _robot(scenario: Scenario) -> dict[str, Any]:
+    robot = scenario.robot
+    if isinstance(robot, RigidRobot):
+        parts = [_body(scenario, part) for part in robot.parts]
+        return {"rotates": robot.rotates, "parts": parts}
     return {
-        "position": configuration[:n].tolist(),
-        "orientation": _pose_orientation(scenario, configuration[n:]),
+        "base": robot.base,
+        "links": [
+            {"name": link.name, "parts": [_body(scenario, part) for part in link.parts]}
+            for link in robot.links
+        ],
+        "joints": [_joint(scenario, joint) for joint in robot.joints],
+        "ignore_self_collision": sorted(sorted(pair) for pair in robot.ignored),
     }
+
+
+def _joint(scenario: Scenario, joint: Joint) -> dict[str, Any]:
+    written: dict[str, Any] = {
+        "name": joint.name,
+        "type": joint.type,
+        "parent": joint.parent,
+        "child": joint.child,
+        "origin": {
+            "position": joint.position.tolist(),
+            "orientation": _orientation(scenario, joint, joint.rotation),
+        },
+    }
+    if joint.axis is not None:
+        written["axis"] = joint.axis.tolist()
+    if joint.type == REVOLUTE:
+        lower, upper = map(degrees_from_radians, (joint.lower, joint.upper))
+        written["limit"] = {"lower_deg": lower, "upper_deg": upper}
+    elif joint.type == PRISMATIC:
+        written["limit"] = {"lower": joint.lower, "upper": joint.upper}
+    return written
+
+
+def _pose(scenario: Scenario, configuration: NDArray[np.float64]) -> dict[str, Any]:
+    robot, n = scenario.robot, scenario.dimension
+    position, turn = configuration[:n], configuration[n:]
+    if isinstance(robot, ArticulatedRobot) and robot.position is not None:
+        position = robot.position
+    pose = {"position": position.tolist(), "orientation": _pose_orientation(scenario, turn)}
+    if isinstance(robot, ArticulatedRobot):
+        pose["joints"] = written_values(robot, configuration)
+    return pose
 
 
 def _pose_orientation(scenario: Scenario, turn: NDArray[np.float64]) -> dict[str, Any]:
@@ -66,7 +111,7 @@ def _pose_orientation(scenario: Scenario, turn: NDArray[np.float64]) -> dict[str
         return _orientation(scenario, fixed, fixed)
     if scenario.dimension == 2:
         return form_of_heading(float(turn[0]))
-    return {"quaternion": turn.tolist()}
+    return {"quaternion": turn[:4].tolist()}
 
 
 def _orientation(

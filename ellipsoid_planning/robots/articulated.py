@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.errors import GeometryError, RobotError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.naming import numbered
 from ellipsoid_planning.geometry.orientation import (
@@ -78,7 +78,11 @@ class ArticulatedRobot:
         object.__setattr__(self, "ignored", _pairs(self.ignored))
         check_tree([link.name for link in self.links], self.joints, self.ignored)
         if not self.parts:
-            raise GeometryError("expected a robot of at least one part, got none")
+            raise RobotError(
+                "expected a robot of at least one part, got none in any of its links; "
+                "give a link a body",
+                ("links",),
+            )
         dimensions = {part.dimension for part in self.parts}
         dimensions |= {len(joint.position) for joint in self.joints}
         if len(dimensions) > 1:
@@ -95,7 +99,11 @@ class ArticulatedRobot:
         if self.base != FIXED_BASE and self.position is not None:
             raise GeometryError("only a fixed base has a position of its own")
         if self.base == FIXED_BASE and not self.moving_joints:
-            raise GeometryError("a robot on a fixed base needs a joint that moves, got none")
+            raise RobotError(
+                "a robot on a fixed base needs a joint that moves, got none; add one, or let "
+                "the base move",
+                ("base",),
+            )
         if self.base != FREE_BASE:
             given = np.eye(self.dimension) if self.orientation is None else self.orientation
             self._keep("orientation", check_rotation(given, self.dimension))

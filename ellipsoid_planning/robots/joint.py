@@ -22,6 +22,8 @@ LIMITED = (REVOLUTE, PRISMATIC)
 # How many numbers of a configuration a joint of each type takes.
 VALUE_COUNTS = {REVOLUTE: 1, CONTINUOUS: 1, PRISMATIC: 1, BALL: 4, FIXED: 0}
 
+UNIT_ROUNDING = 4.0 * float(np.finfo(float).eps)
+
 
 @dataclass(frozen=True, eq=False)
 class Joint:
@@ -101,7 +103,8 @@ class Joint:
         length = float(np.linalg.norm(axis)) if axis.shape == (n,) else 0.0
         if not 0.0 < length < math.inf:
             raise self._error(f"expected an axis of {n} numbers other than zero, got {axis}")
-        return axis / length
+        # An axis of unit length keeps its bits, so that a written one reads back as it was.
+        return axis if abs(length - 1.0) <= UNIT_ROUNDING else axis / length
 
     def _check_limits(self) -> None:
         if self.type == CONTINUOUS:

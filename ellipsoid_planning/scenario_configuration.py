@@ -1,0 +1,68 @@
+"""Start and goal as they are kept: headings wrapped, quaternions of unit length, within limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.orientation import normalised_heading
+from ellipsoid_planning.orientation_forms import unit_quaternion
+from ellipsoid_planning.robots.coordinates import headings, quaternions
+from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
+from ellipsoid_planning.robots.robot import Robot
+from ellipsoid_planning.scenario_joints import joint_key, limits_text
+from ellipsoid_planning.scenario_origin import Origin
+
+# A value beyond a limit by less [rad or the unit of length] is rounding, and put on the limit.
+LIMIT_ROUNDING = 1e-9
+
+
+def normalised_configuration(
+    robot: Robot, configuration: ArrayLike, which: str, origin: Origin
+) -> NDArray[np.float64]:
+    """Return a configuration (d,) with what is equivalent made one.
+
+    Args:
+        robot: whose configuration it is.
+        configuration: d finite numbers.
+        which: start or goal, for messages.
+        origin: where the scenario came from, for messages.
+
+    Raises:
+        ScenarioError: if the size is another, a quaternion far from unit length, or a joint's
+            value out of its limits.
+    """
+    values = np.array(configuration, dtype=float)
+    size = robot.configuration_size
+    if values.shape != (size,) or not np.all(np.isfinite(values)):
+        problem = f"expected a configuration of {size} finite numbers, got {values.tolist()}"
+        raise origin.error((which,), problem)
+    for index in headings(robot):
+        values[index] = normalised_heading(float(values[index]))
+    try:
+        for place in quaternions(robot):
+            values[place] = unit_quaternion(values[place])
+    except GeometryError as error:
+        raise origin.error((which,), str(error)) from None
+    _keep_limits(robot, values, which, origin)
+    return values
+
+
+def _keep_limits(robot: Robot, values: NDArray[np.float64], which: str, origin: Origin) -> None:
+    for joint in robot.joints:
+        if joint.type not in LIMITED:
+            continue
+        place = robot.joint_slices[joint.name]
+        value = float(values[place][0])
+        kept = min(max(value, joint.lower), joint.upper)
+        if abs(value - kept) > LIMIT_ROUNDING:
+            got = f"{math.degrees(value) if joint.type == REVOLUTE else value:.10g}"
+            raise origin.error(
+                (which, "joints", joint_key(joint)),
+                f"expected joint {joint.name!r} within its limits {limits_text(joint)}, got "
+                f"{got}; change the value or the limits",
+            )
+        values[place] = kept

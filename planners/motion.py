@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from ompl import base as ob
 
+from ellipsoid_planning.kernels.articulated_states import UNIT_TOLERANCE
 from ellipsoid_planning.kernels.motion import planar_motion_is_free, spatial_motion_is_free
 
-from .spaces import check_space, fixed_quaternion
-from .validity import UNIT_TOLERANCE
+from .articulated_states import articulated_motion_check
+from .spaces import check_space, fixed_quaternion, is_articulated
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
@@ -49,7 +50,9 @@ class CertifiedMotionValidator(ob.MotionValidator):
 
 
 def motion_check(cspace: CSpace) -> MotionCheck:
-    """The fastest way from two states of ``cspace`` to the certificate: scalars into one kernel."""
+    """The fastest way from two states of ``cspace`` to the certificate: numbers into one kernel."""
+    if is_articulated(cspace):
+        return articulated_motion_check(cspace)
     if cspace.rotates:
         return _check_se2(cspace) if cspace.dimension == 2 else _check_se3(cspace)
     return _check_vector(cspace)

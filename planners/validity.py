@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 
 from ompl import base as ob
 
+from ellipsoid_planning.kernels.articulated_states import UNIT_TOLERANCE
 from ellipsoid_planning.kernels.validity import configuration_is_free, planar_is_free
 
-from .spaces import check_space, fixed_quaternion, read_configuration
+from .articulated_states import articulated_state_check
+from .spaces import check_space, fixed_quaternion, is_articulated, read_configuration
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
-
-UNIT_TOLERANCE = 1e-9
-"""How far |q|^2 of a state's quaternion may be from 1."""
 
 StateCheck = Callable[[ob.State], bool]
 
@@ -24,8 +23,9 @@ StateCheck = Callable[[ob.State], bool]
 class EllipsoidValidityChecker(ob.StateValidityChecker):
     """Valid: provably free, at the required clearance, inside every arena and the bounds.
 
-    A heading outside [-pi, pi] or a quaternion with | |q|^2 - 1 | > 1e-9 is invalid as well:
-    OMPL's motions misbehave there.
+    An articulated robot also keeps its joints' limits and its parts apart from each other. A
+    heading (or value of a continuous joint) outside [-pi, pi] or a quaternion with
+    | |q|^2 - 1 | > 1e-9 is invalid as well: OMPL's motions misbehave there.
 
     Attributes:
         cspace: the C-space; planners reach it through ``si.getStateValidityChecker().cspace``.
@@ -52,7 +52,9 @@ class EllipsoidValidityChecker(ob.StateValidityChecker):
 
 
 def state_check(cspace: CSpace) -> StateCheck:
-    """The fastest way from a state of ``cspace`` to its validity: scalars into one kernel."""
+    """The fastest way from a state of ``cspace`` to its validity: its numbers into one kernel."""
+    if is_articulated(cspace):
+        return articulated_state_check(cspace)
     if cspace.rotates:
         return _check_se2(cspace) if cspace.dimension == 2 else _check_se3(cspace)
     return _check_vector(cspace)

@@ -1,0 +1,97 @@
+"""The fastest way from OMPL's states of an articulated robot to their proofs: two calls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from ompl import base as ob
+
+from ellipsoid_planning.cspace.poses import rotation_quaternion
+from ellipsoid_planning.kernels import articulated_states as states
+from ellipsoid_planning.robots.articulated import FIXED_BASE, FREE_BASE, ArticulatedRobot
+from ellipsoid_planning.robots.joint import BALL, CONTINUOUS
+
+from .bindings import StateValues
+from .spaces import state_space
+
+if TYPE_CHECKING:
+    from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
+
+
+def state_form(robot: ArticulatedRobot) -> NDArray[np.float64]:
+    """What tells kernels how the states of ``robot`` are laid out (kernels.articulated_states)."""
+    kind = _base_kind(robot)
+    angles = [2] if kind == states.FREE_2D else []
+    quaternions = [3] if kind == states.FREE_3D else []
+    for joint in robot.moving_joints:
+        first = robot.joint_slices[joint.name].start
+        if joint.type == CONTINUOUS:
+            angles.append(first)
+        elif joint.type == BALL:
+            quaternions.append(first)
+    form = [kind, *_base_pose(robot), len(angles), *angles, len(quaternions), *quaternions]
+    return np.array(form, dtype=np.float64)
+
+
+def _base_kind(robot: ArticulatedRobot) -> int:
+    if robot.base == FIXED_BASE:
+        return states.FIXED
+    if robot.base == FREE_BASE:
+        return states.FREE_2D if robot.dimension == 2 else states.FREE_3D
+    return states.TRANSLATING_2D if robot.dimension == 2 else states.TRANSLATING_3D
+
+
+def _base_pose(robot: ArticulatedRobot) -> list[float]:
+    pose = np.zeros(7)
+    if robot.position is not None:
+        pose[: robot.dimension] = robot.position
+    if robot.orientation is not None:
+        pose[3:] = rotation_quaternion(robot.orientation)
+    return pose.tolist()
+
+
+def articulated_state_check(cspace: ArticulatedCSpace) -> Callable[[ob.State], bool]:
+    """From a state to whether it is proved free."""
+    scene, kinematics, form = cspace.scene, cspace.kinematics, state_form(cspace.robot)
+    space, size = state_space(cspace), cspace.robot.configuration_size
+    serialize, is_free = space.serialize, states.state_is_free
+    # Every call takes a buffer for itself, so that calls from several threads are safe.
+    spare = [StateValues(space, 1, size)]
+
+    def check(state: ob.State) -> bool:
+        try:
+            buffer = spare.pop()
+        except IndexError:
+            buffer = StateValues(space, 1, size)
+        serialize(buffer.places[0], state)
+        free: bool = is_free(scene, kinematics, form, buffer.values)
+        spare.append(buffer)
+        return free
+
+    return check
+
+
+def articulated_motion_check(
+    cspace: ArticulatedCSpace,
+) -> Callable[[ob.State, ob.State], bool]:
+    """From two states to whether the motion between them is proved free."""
+    scene, kinematics, form = cspace.scene, cspace.kinematics, state_form(cspace.robot)
+    space, size = state_space(cspace), cspace.robot.configuration_size
+    serialize, is_free = space.serialize, states.motion_of_states_is_free
+    spare = [StateValues(space, 2, size)]
+
+    def check(first: ob.State, second: ob.State) -> bool:
+        try:
+            buffer = spare.pop()
+        except IndexError:
+            buffer = StateValues(space, 2, size)
+        serialize(buffer.places[0], first)
+        serialize(buffer.places[1], second)
+        free: bool = is_free(scene, kinematics, form, buffer.values)
+        spare.append(buffer)
+        return free
+
+    return check

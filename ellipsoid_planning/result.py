@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning import __version__, atomic
 from ellipsoid_planning.errors import ResultError
 from ellipsoid_planning.metric import base_travel, path_length
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
 
 FORMAT = 1
@@ -54,7 +54,7 @@ class PathResult:
     @classmethod
     def from_configurations(
         cls,
-        robot: RigidRobot,
+        robot: Robot,
         configurations: ArrayLike,
         *,
         min_clearance: float,
@@ -120,7 +120,15 @@ class PlanResult:
         return self.path is not None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result in its file format, as data for JSON."""
+        """Return the result in its file format, as data for JSON.
+
+        A configuration is the base, then the values of the joints in the order of the path's
+        ``joints``, which only the path of a robot with joints has.
+        """
+        path = None if self.path is None else self.path.to_dict()
+        names = joint_names(self.scenario.robot)
+        if path is not None and names:
+            path = {"joints": names, **path}
         return {
             "format": FORMAT,
             "scenario": self.scenario.to_dict(),
@@ -128,7 +136,7 @@ class PlanResult:
             "seed": self.seed,
             "status": self.status,
             "time": dict(self.time),
-            "path": None if self.path is None else self.path.to_dict(),
+            "path": path,
             "statistics": dict(self.statistics),
             "version": self.version,
         }
@@ -181,6 +189,11 @@ def load_result(path: str | Path) -> PlanResult:
         place = f":{error.lineno}:{error.colno}" if isinstance(error, json.JSONDecodeError) else ""
         raise ResultError(f"{path}{place}: broken JSON; plan again to get a whole file") from None
     return PlanResult.from_dict(data, str(path))
+
+
+def joint_names(robot: Robot) -> list[str]:
+    """Names of the joints in the order of configurations; none of a rigid robot."""
+    return list(robot.joint_slices)
 
 
 def _plain(value: Any) -> Any:

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.errors import ContradictionError, ResultError, ScenarioError
 from ellipsoid_planning.metric import base_travel, path_length
-from ellipsoid_planning.result import FORMAT, STATUSES, PathResult
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.result import FORMAT, STATUSES, PathResult, joint_names
+from ellipsoid_planning.robots.coordinates import limits, quaternions
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
 
 AGREEMENT = 1e-6
 UNIT_TOLERANCE = 1e-6
+LIMIT_TOLERANCE = 1e-9
 
 
 def result_fields(data: Any, file: str | None) -> dict[str, Any]:
@@ -66,14 +68,13 @@ class _Reader:
             key: self._optional(entry, key, float, "time.") for key in ("total", "build", "search")
         }
 
-    def _path(
-        self, document: Mapping[str, Any], robot: RigidRobot, status: str
-    ) -> PathResult | None:
+    def _path(self, document: Mapping[str, Any], robot: Robot, status: str) -> PathResult | None:
         entry = self._optional(document, "path", dict)
         if (entry is not None) != (status == "solved"):
             raise self._error("path", f"expected a path exactly when solved, status is {status!r}")
         if entry is None:
             return None
+        self._check_joints(entry, joint_names(robot))
         configurations = self._configurations(entry, robot)
         clearance = self._optional(entry, "min_clearance", float, "path.")
         path = PathResult.from_configurations(
@@ -86,7 +87,15 @@ class _Reader:
         self._check(entry, "base_travel", base_travel(robot, configurations))
         return path
 
-    def _configurations(self, entry: Mapping[str, Any], robot: RigidRobot) -> NDArray[np.float64]:
+    def _check_joints(self, entry: Mapping[str, Any], expected: list[str]) -> None:
+        given = self._entry(entry, "joints", list, "path.") if expected else entry.get("joints", [])
+        if given != expected:
+            raise self._error(
+                "path.joints",
+                f"expected the scenario's joints in their order, {expected}, got {given}",
+            )
+
+    def _configurations(self, entry: Mapping[str, Any], robot: Robot) -> NDArray[np.float64]:
         rows = self._entry(entry, "configurations", list, "path.")
         size, field = robot.configuration_size, "path.configurations"
         for index, row in enumerate(rows):
@@ -96,12 +105,25 @@ class _Reader:
         if not rows:
             raise self._error(field, "expected one configuration or more, got none")
         configurations = np.array(rows, dtype=float)
-        if size == 7:
-            errors = np.abs(np.linalg.norm(configurations[:, 3:], axis=1) - 1.0)
+        for place in quaternions(robot):
+            errors = np.abs(np.linalg.norm(configurations[:, place], axis=1) - 1.0)
             if np.max(errors) > UNIT_TOLERANCE:
-                worst = int(np.argmax(errors))
-                raise self._error(f"{field}[{worst}]", "expected a unit quaternion")
+                worst, owner = int(np.argmax(errors)), _owner(robot, place.start)
+                raise self._error(f"{field}[{worst}]", f"expected a unit quaternion{owner}")
+        self._check_limits(configurations, robot, field)
         return configurations
+
+    def _check_limits(self, configurations: NDArray[np.float64], robot: Robot, field: str) -> None:
+        low, high = limits(robot)
+        beyond = np.maximum(low - configurations, configurations - high)
+        row, place = divmod(int(np.argmax(beyond)), beyond.shape[1])
+        if beyond[row, place] > LIMIT_TOLERANCE:
+            value = configurations[row, place]
+            raise self._error(
+                f"{field}[{row}]",
+                f"expected a value between {low[place]:.10g} and {high[place]:.10g}"
+                f"{_owner(robot, place)}, got {value:.10g}",
+            )
 
     def _check(self, entry: Mapping[str, Any], key: str, computed: float) -> None:
         stated = self._entry(entry, key, float, "path.")
@@ -129,6 +151,14 @@ class _Reader:
 
     def _error(self, field: str, problem: str) -> ResultError:
         return ResultError(": ".join(part for part in (self._file, field, problem) if part))
+
+
+def _owner(robot: Robot, place: int) -> str:
+    """Whose the number at a place of a configuration is, for messages; "" for the base's."""
+    for name, own in robot.joint_slices.items():
+        if own.start <= place < own.stop:
+            return f" for joint {name!r}"
+    return ""
 
 
 def _is_number(value: Any) -> bool:

@@ -90,10 +90,6 @@ class Scenario:
 
     def cspace(self) -> CSpace:
         """Return the configuration space of the robot in the world, with the clearance."""
-        if isinstance(self.robot, RigidRobot):
-            from ellipsoid_planning.cspace.space import CSpace
-
-            return CSpace(self.world, self.robot, self.clearance)
         from ellipsoid_planning.cspace.of import cspace_of
 
         return cspace_of(self.world, self.robot, self.clearance)

@@ -5,10 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ellipsoid_planning.errors import GeometryError, ScenarioError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.minkowski import check_fits
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.joint import FIXED, PRISMATIC
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
+from ellipsoid_planning.robots.tree import joints_in_order
 from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.scenario_origin import Path
 
@@ -28,7 +34,8 @@ def check_endpoints(scenario: Scenario, cspace: CSpace | None = None) -> None:
         cspace: its configuration space, if there is one already.
 
     Raises:
-        ScenarioError: naming start or goal, the part, what it hits or leaves, and how deep.
+        ScenarioError: naming start or goal, the part, what it hits or leaves, and how deep; also
+            when parts of the robot hit each other.
     """
     check_fit(scenario)
     space = scenario.cspace() if cspace is None else cspace
@@ -47,10 +54,37 @@ def check_fit(scenario: Scenario) -> None:
     Raises:
         ScenarioError: naming the part, the arena, and by how much the part is too large.
     """
-    for index, part in enumerate(scenario.robot.parts):
+    robot = scenario.robot
+    rotations, paths = _fixed_rotations(robot), _part_paths(robot)
+    for part, link, path in zip(robot.parts, robot.part_links, paths, strict=True):
         for arena in scenario.world.arenas:
-            check = _check_turning_part if scenario.robot.rotates else _check_fixed_part
-            check(scenario, part, arena, ("robot", "parts", index))
+            if link in rotations:
+                turned = rotations[link] @ part.rotation
+                _check_fixed_part(scenario, part, turned, arena, path)
+            else:
+                _check_turning_part(scenario, part, arena, path)
+
+
+def _fixed_rotations(robot: Robot) -> dict[str, NDArray[np.float64]]:
+    """Rotations (n, n), to world, of the links that never turn, by name."""
+    if robot.orientation is None:
+        return {}
+    rotations = {robot.root: robot.orientation}
+    for joint in joints_in_order(robot.joints, robot.root):
+        if joint.parent in rotations and joint.type in (PRISMATIC, FIXED):
+            rotations[joint.child] = rotations[joint.parent] @ joint.rotation
+    return rotations
+
+
+def _part_paths(robot: RigidRobot | ArticulatedRobot) -> list[Path]:
+    """Where each part stands in a scenario's document, in the order of the robot's parts."""
+    if isinstance(robot, RigidRobot):
+        return [("robot", "parts", index) for index in range(len(robot.parts))]
+    return [
+        ("robot", "links", index, "parts", own)
+        for index, link in enumerate(robot.links)
+        for own in range(len(link.parts))
+    ]
 
 
 def _check_turning_part(scenario: Scenario, part: Ellipsoid, arena: Ellipsoid, path: Path) -> None:
@@ -77,9 +111,13 @@ def _check_turning_part(scenario: Scenario, part: Ellipsoid, arena: Ellipsoid, p
         )
 
 
-def _check_fixed_part(scenario: Scenario, part: Ellipsoid, arena: Ellipsoid, path: Path) -> None:
-    orientation = scenario.robot.orientation
-    rotation = part.rotation if orientation is None else orientation @ part.rotation
+def _check_fixed_part(
+    scenario: Scenario,
+    part: Ellipsoid,
+    rotation: NDArray[np.float64],
+    arena: Ellipsoid,
+    path: Path,
+) -> None:
     grown = Ellipsoid(np.zeros_like(part.centre), rotation, part.semi_axes + scenario.clearance)
     centred = Ellipsoid(np.zeros_like(arena.centre), arena.rotation, arena.semi_axes)
     try:
@@ -115,4 +153,6 @@ def _contact_text(contact: Contact) -> str:
         return f"part {contact.part!r} hits obstacle {contact.body!r} {amount}"
     if contact.kind == "arena":
         return f"part {contact.part!r} leaves arena {contact.body!r} {amount}"
+    if contact.kind == "self":
+        return f"part {contact.part!r} hits part {contact.body!r} of the robot itself {amount}"
     return str(contact.message)

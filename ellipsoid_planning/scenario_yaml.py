@@ -25,7 +25,8 @@ def scenario_text(scenario: Scenario) -> str:
 
 def _block(mapping: Mapping[str, Any], indent: str) -> Iterator[str]:
     """The lines of a mapping in block style."""
-    for key, value in mapping.items():
+    for name, value in mapping.items():
+        key = _flow(name)
         if key == "description" and _foldable(value):
             yield f"{indent}{key}: >-"
             yield from _folded(value, indent + "  ")
@@ -71,7 +72,9 @@ def _foldable(text: str) -> bool:
 def _flow(value: Any) -> str:
     """A value on one line."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key}: {_flow(entry)}" for key, entry in value.items()) + "}"
+        return (
+            "{" + ", ".join(f"{_flow(key)}: {_flow(entry)}" for key, entry in value.items()) + "}"
+        )
     if isinstance(value, list):
         return "[" + ", ".join(map(_flow, value)) + "]"
     if isinstance(value, str) and _plain(value):

@@ -13,6 +13,9 @@ from ellipsoid_planning.robots.tree import joints_in_order
 if TYPE_CHECKING:
     from ellipsoid_planning.robots.articulated import ArticulatedRobot
 
+# What a joint that moves no part reaches, as a fraction of the whole robot's reach.
+LEAST_REACH = 1e-3
+
 
 def link_reaches(robot: ArticulatedRobot) -> dict[str, float]:
     """Upper bounds, by link, of the distance from the link's origin of it and all that hangs on it.
@@ -51,11 +54,14 @@ def joint_weights(robot: ArticulatedRobot) -> NDArray[np.float64]:
 
     Half of how far a turn by one radian moves points at most, as OMPL's SE(2) counts headings of a
     robot of reach 1; OMPL's distance of rotations in space is half the angle. Prismatic joints
-    count as they are.
+    count as they are. Joints that move no part count a little, so that different configurations
+    are never at distance 0.
     """
     reaches = joint_reaches(robot)
+    least = LEAST_REACH * robot_reach(robot)
     weights = []
     for joint in robot.moving_joints:
-        turn = (1.0 if joint.type == BALL else 0.5) * reaches[joint.name]
+        reach = max(reaches[joint.name], least)
+        turn = (1.0 if joint.type == BALL else 0.5) * reach
         weights.append(1.0 if joint.type == PRISMATIC else turn)
     return np.array(weights)

@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.errors import GeometryError, RobotError
 from ellipsoid_planning.geometry.orientation import normalised_heading
 from ellipsoid_planning.orientation_forms import unit_quaternion
 from ellipsoid_planning.robots.coordinates import headings, quaternions
 from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
 from ellipsoid_planning.robots.robot import Robot
-from ellipsoid_planning.scenario_joints import joint_key, limits_text
+from ellipsoid_planning.scenario_joints import keyed_joints, limits_text
 from ellipsoid_planning.scenario_origin import Origin
 
 # A value beyond a limit by less [rad or the unit of length] is rounding, and put on the limit.
@@ -33,7 +33,7 @@ def normalised_configuration(
 
     Raises:
         ScenarioError: if the size is another, a quaternion far from unit length, or a joint's
-            value out of its limits.
+            value out of its limits; if two joints' values would have one key in a file.
     """
     values = np.array(configuration, dtype=float)
     size = robot.configuration_size
@@ -42,17 +42,21 @@ def normalised_configuration(
         raise origin.error((which,), problem)
     for index in headings(robot):
         values[index] = normalised_heading(float(values[index]))
+    _keep_limits(robot, values, which, origin)
     try:
         for place in quaternions(robot):
             values[place] = unit_quaternion(values[place])
     except GeometryError as error:
         raise origin.error((which,), str(error)) from None
-    _keep_limits(robot, values, which, origin)
     return values
 
 
 def _keep_limits(robot: Robot, values: NDArray[np.float64], which: str, origin: Origin) -> None:
-    for joint in robot.joints:
+    try:
+        keyed = keyed_joints(robot)
+    except RobotError as error:
+        raise origin.error(("robot", *error.path), str(error)) from None
+    for key, joint in keyed.items():
         if joint.type not in LIMITED:
             continue
         place = robot.joint_slices[joint.name]
@@ -61,7 +65,7 @@ def _keep_limits(robot: Robot, values: NDArray[np.float64], which: str, origin: 
         if abs(value - kept) > LIMIT_ROUNDING:
             got = f"{math.degrees(value) if joint.type == REVOLUTE else value:.10g}"
             raise origin.error(
-                (which, "joints", joint_key(joint)),
+                (which, "joints", key),
                 f"expected joint {joint.name!r} within its limits {limits_text(joint)}, got "
                 f"{got}; change the value or the limits",
             )

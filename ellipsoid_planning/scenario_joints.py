@@ -19,6 +19,7 @@ from ellipsoid_planning.orientation_forms import (
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.joint import BALL, CONTINUOUS, FIXED, LIMITED, REVOLUTE, Joint
 from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario_blocks import Orientation
 from ellipsoid_planning.scenario_entries import Entries
 from ellipsoid_planning.scenario_origin import Path
@@ -32,14 +33,16 @@ def joint_key(joint: Joint) -> str:
     return joint.name + SUFFIX if joint.type in IN_DEGREES else joint.name
 
 
-def keyed_joints(robot: ArticulatedRobot) -> dict[str, Joint]:
+def keyed_joints(robot: Robot) -> dict[str, Joint]:
     """The moving joints by the keys of their values.
 
     Raises:
         RobotError: if two joints have the same key.
     """
     keyed: dict[str, Joint] = {}
-    for joint in robot.moving_joints:
+    for joint in robot.joints:
+        if joint.type == FIXED:
+            continue
         key = joint_key(joint)
         if key in keyed:
             raise RobotError(

@@ -179,6 +179,17 @@ def test_values_on_their_limits_are_within_them():
         scenario_at(robot, math.nan)
 
 
+def test_keys_of_joint_values_must_differ():
+    joints = (
+        Joint.of("a", "base", "arm", "revolute", [1.0, 0.0], lower=-1.0, upper=1.0),
+        Joint.of("a_deg", "arm", "tip", "prismatic", [1.0, 0.0], lower=-1.0, upper=1.0),
+    )
+    robot = ArticulatedRobot((Link("base", (BODY,)), Link("arm"), Link("tip")), joints)
+    with pytest.raises(ScenarioError, match="both be called a_deg") as caught:
+        Scenario("twice", World([-5, -5], [5, 5]), robot, np.zeros(5), np.zeros(5))
+    assert caught.value.field == "robot.joints[1].name"
+
+
 @given(st.floats(-720.0, 720.0))
 def test_degrees_survive_writing(degrees):
     angle = math.radians(degrees)

@@ -27,10 +27,10 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.geometry.farthest import farthest_squared
 
 DEFAULT_COUNT = 200
 ROUNDING = 64.0 * float(np.finfo(float).eps)
-BISECTIONS = 120
 
 
 def minkowski_sum_boundary(
@@ -118,7 +118,7 @@ def difference_contains(arena: Ellipsoid, part: Ellipsoid, points: ArrayLike) ->
     offset = np.asarray(points, dtype=float) + (part.centre - arena.centre)
     left, stretch, _ = np.linalg.svd(_in_arena_frame(arena, part.matrix))
     coordinates = _in_arena_frame(arena, offset.T).T @ left
-    return np.asarray(_farthest_squared(coordinates, stretch) <= 1.0 + _tolerance(arena, part))
+    return np.asarray(farthest_squared(coordinates, stretch) <= 1.0 + _tolerance(arena, part))
 
 
 def check_fits(arena: Ellipsoid, part: Ellipsoid) -> None:
@@ -182,35 +182,6 @@ class _Shrunk:
     def _shrunk_normals(self, unit: NDArray[np.float64]) -> NDArray[np.float64]:
         gradient = unit / self.semi_axes  # x'/a'^2 with x' = a' unit, (5.13)
         return np.asarray(gradient / np.linalg.norm(gradient, axis=1, keepdims=True))
-
-
-def _farthest_squared(
-    coordinates: NDArray[np.float64], stretch: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the max of |q + s w|^2 over |w| <= 1 for each q (m, n), s (n,) descending, from above.
-
-    With t = mu - s_max^2 the derivative 1 - sum q^2 s^2 / (t + d)^2 grows in t, and its root
-    lies between 0 and |q s|.
-    """
-    weights = (coordinates * stretch) ** 2
-    # As a product of sum and difference the gaps keep their digits.
-    gaps = (stretch[0] - stretch) * (stretch[0] + stretch)
-    low = np.zeros(len(coordinates))
-    high = np.sqrt(np.sum(weights, axis=1))
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        rising = np.sum(_ratio(weights, (middle[:, None] + gaps) ** 2), axis=1) <= 1.0
-        high = np.where(rising, middle, high)
-        low = np.where(rising, low, middle)
-    mu = stretch[0] ** 2 + high
-    terms = _ratio(coordinates**2 * mu[:, None], high[:, None] + gaps)
-    return np.asarray(mu + np.sum(terms, axis=1))
-
-
-def _ratio(above: NDArray[np.float64], below: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return above / below with 0 / 0 = 0: an absent coordinate adds nothing."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        return np.where(above > 0.0, above / below, 0.0)
 
 
 def _in_arena_frame(arena: Ellipsoid, columns: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,13 +13,25 @@ from planners.cli.interrupt import clean_up
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
+    from ellipsoid_planning.robots import Robot
 
+QUATERNION = ("qx", "qy", "qz", "qw")
 COLUMNS = {
     (2, True): ("x", "y", "yaw"),
     (3, True): ("x", "y", "z", "qx", "qy", "qz", "qw"),
     (2, False): ("x", "y"),
     (3, False): ("x", "y", "z"),
 }
+
+
+def columns(robot: Robot) -> tuple[str, ...]:
+    """The names of a configuration's numbers."""
+    base = COLUMNS[robot.dimension, robot.rotates][: robot.base_size]
+    joints: list[str] = []
+    for name, where in robot.joint_slices.items():
+        ball = where.stop - where.start == len(QUATERNION)
+        joints += [f"{name}_{entry}" for entry in QUATERNION] if ball else [name]
+    return (*base, *joints)
 
 
 def check_outputs(**outputs: Path | None) -> None:
@@ -59,8 +71,9 @@ def _check_output(option: str, path: Path) -> None:
 def write_csv(result: PlanResult, output: Path) -> None:
     """Write the interpolated path: a header, then one row a configuration.
 
-    The first column is the length travelled so far in OMPL's metric; headings are in radians,
-    quaternions (x, y, z, w). Every state of the path is among the rows.
+    The first column is the length travelled so far in OMPL's metric; headings and joint values
+    that are angles are in radians, quaternions (x, y, z, w). A joint's column has its name, a
+    ball joint's four have a suffix too. Every state of the path is among the rows.
 
     Raises:
         EllipsoidPlanningError: the file cannot be written.
@@ -73,7 +86,7 @@ def write_csv(result: PlanResult, output: Path) -> None:
     trajectory = follow(scenario.cspace(), result.path.configurations)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("travelled", *COLUMNS[scenario.dimension, scenario.robot.rotates]))
+    writer.writerow(("travelled", *columns(scenario.robot)))
     travelled, rows = trajectory.travelled.tolist(), trajectory.configurations.tolist()
     writer.writerows([length, *row] for length, row in zip(travelled, rows, strict=True))
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from ellipsoid_planning.robots.joint import CONTINUOUS, PRISMATIC, REVOLUTE
 from planners.view import colours
 from planners.view.figures_plane import finish
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from planners.view.layer_slice import LayerSlice
 
 LINES = 40
+LONGEST_LINE = 64  # that fits over the picture
 
 
 def draw_layer(axes: Axes, view: LayerSlice, marked: str, lines: int = LINES) -> None:
@@ -39,11 +41,11 @@ def draw_layer(axes: Axes, view: LayerSlice, marked: str, lines: int = LINES) ->
     (left, bottom), (right, top) = view.bounds
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
-    _add_legend(axes)
+    add_legend(axes)
 
 
-def _add_legend(axes: Axes) -> None:
-    """Put the legend below the axis label, at a distance that does not scale with the axes."""
+def add_legend(axes: Axes) -> None:
+    """Put a legend below the axis label, at a distance that does not scale with the axes."""
     from matplotlib.transforms import ScaledTranslation
 
     below = ScaledTranslation(0.0, -0.42, axes.figure.dpi_scale_trans)
@@ -118,9 +120,30 @@ def _title(view: LayerSlice) -> str:
     if view.fixed is not None:
         axis, value = view.fixed
         place = f" at {'xyz'[axis]} = {value:.3g}"
+    joints = _joint_values(view)
     if not view.cspace.rotates:
-        return f"The layer{place}"
+        return f"The layer{place}{joints}"
     if view.cspace.dimension == 2:
-        heading = f"{math.degrees(view.configuration[2]):.0f}°".replace("-", "\N{MINUS SIGN}")
-        return f"The layer of heading {heading}"
-    return f"The layer of one orientation{place}"
+        return f"The layer of heading {_degrees(float(view.configuration[2]))}{joints}"
+    return f"The layer of one orientation{place}{joints}"
+
+
+def _joint_values(view: LayerSlice) -> str:
+    """Say the values of the joints on a second line, or how many there are if it is too long."""
+    robot = view.cspace.robot
+    said = []
+    for joint in robot.joints:
+        if joint.type in (REVOLUTE, CONTINUOUS, PRISMATIC):
+            (value,) = view.configuration[robot.joint_slices[joint.name]]
+            shown = f"{value:.3g}" if joint.type == PRISMATIC else _degrees(float(value))
+            said.append(f"{joint.name} {shown}")
+    line, count = ", ".join(said), len(robot.joint_slices)
+    if count == 0:
+        return ""
+    if len(said) == count and len(line) <= LONGEST_LINE:
+        return f"\n{line}"
+    return f"\nat one value of {'the joint' if count == 1 else f'each of the {count} joints'}"
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.0f}°".replace("-", "\N{MINUS SIGN}")

@@ -13,7 +13,7 @@ from planners.view.links import followed_points, ghost_count, link_colours, link
 from planners.view.surfaces import ellipsoid_patches, path_radius, tube_patches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from planners.view.trajectory import Trajectory
 
 SWEPT_POSES = 9
+SAME = 1e-4  # difference of bodies in one place, as a part of their size
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
 
 
@@ -91,7 +92,7 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
 
     The view is a parallel projection along `workspace_camera`; the arena is open to the viewer.
     """
-    world, robot = scenario.world, scenario.robot
+    world = scenario.world
     painting = Painting(workspace_camera(scenario))
     axes.set_title("Workspace", loc="left", fontsize=11)
     if world.arenas:
@@ -100,11 +101,9 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     else:
         _draw_floor(axes, painting.camera, scenario)
     _add_bodies(painting, world.obstacles, colours.OBSTACLE)
+    drawn = _add_ends(painting, scenario)
     if trajectory is not None:
-        _add_swept(painting, scenario, trajectory)
-    for configuration, colour in ((scenario.start, colours.START), (scenario.goal, colours.GOAL)):
-        _add_robot(painting, robot, configuration, link_shades(robot, colour), 96)
-        _add_joints(painting, robot, configuration)
+        _add_swept(painting, scenario, trajectory, drawn)
     painting.paint(axes, 3)
     axes.set_aspect("equal", anchor="N")
     axes.autoscale_view()
@@ -118,16 +117,38 @@ def _add_bodies(
         painting.add(ellipsoid_patches(body, 96, 48), colour, inside)
 
 
-def _add_robot(
-    painting: Painting,
-    robot: Robot,
-    configuration: NDArray[np.float64],
-    shades: Mapping[str, str],
-    fineness: int,
+def _add_ends(painting: Painting, scenario: Scenario) -> set[bytes]:
+    """Add the robot at start and goal; return which bodies are drawn.
+
+    Where a link has not moved in between it has the colour of the moving robot's.
+    """
+    robot, hues, drawn = scenario.robot, link_colours(scenario.robot), set[bytes]()
+    ends = ((scenario.start, colours.START), (scenario.goal, colours.GOAL))
+    first, last = ({_place(body) for body in robot.bodies_at(q)} for q, _ in ends)
+    unmoved = first & last if robot.joints else set()
+    for configuration, colour in ends:
+        shades = link_shades(robot, colour)
+        for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
+            hue = hues[link] if _place(body) in unmoved else shades[link]
+            _add_once(painting, body, hue, 96, drawn)
+        _add_joints(painting, robot, configuration)
+    return drawn
+
+
+def _add_once(
+    painting: Painting, body: Ellipsoid, colour: str, fineness: int, drawn: set[bytes]
 ) -> None:
-    """Add each part in its link's shade."""
-    for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
-        painting.add(ellipsoid_patches(body, fineness, fineness // 2), shades[link])
+    """Add a body unless it is drawn: of two in one place one would see a bit of each."""
+    if _place(body) not in drawn:
+        painting.add(ellipsoid_patches(body, fineness, fineness // 2), colour)
+        drawn.add(_place(body))
+
+
+def _place(body: Ellipsoid) -> bytes:
+    """The same for bodies that look the same."""
+    size = SAME * float(body.semi_axes.max())
+    centre, shape = body.centre / size, body.shape_matrix / (size * body.semi_axes.max())
+    return (np.round([*centre, *shape.ravel()]) + 0.0).tobytes()
 
 
 def _add_joints(painting: Painting, robot: Robot, configuration: NDArray[np.float64]) -> None:
@@ -136,11 +157,14 @@ def _add_joints(painting: Painting, robot: Robot, configuration: NDArray[np.floa
         painting.add(tube_patches(marker.placed(poses), marker.radius), colours.JOINT)
 
 
-def _add_swept(painting: Painting, scenario: Scenario, trajectory: Trajectory) -> None:
+def _add_swept(
+    painting: Painting, scenario: Scenario, trajectory: Trajectory, drawn: set[bytes]
+) -> None:
     robot = scenario.robot
     shades = {link: colours.tint(hue, 0.3) for link, hue in link_colours(robot).items()}
     for configuration in trajectory.evenly(ghost_count(robot, SWEPT_POSES))[1:-1]:
-        _add_robot(painting, robot, configuration, shades, 40)
+        for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
+            _add_once(painting, body, shades[link], 40, drawn)
     positions = followed_points(robot, trajectory.configurations)
     radius = path_radius(scenario.robot.parts, 0.5 * painting.camera.distance)
     painting.add(tube_patches(positions, radius, sides=6), colours.PATH)

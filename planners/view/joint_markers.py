@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ellipsoid_planning.geometry import Ellipsoid
     from ellipsoid_planning.robots import Joint, Robot
 
-SIZE = 0.3  # radius as a part of the robot's median thickness
+SIZE = 0.4  # radius as a part of the robot's median thickness
 RAIL = 0.5  # radius of a prismatic joint's rail, in radii
 
 

@@ -43,6 +43,7 @@ ROOT = "scenario"
 EYE_DISTANCE = 2.0  # at which meshcat's own lights suit the scene
 THICKNESS = 0.012  # of a planar body, as a part of the scene's size
 FRAME_RADIUS = 0.0015  # of an arena's outline or the bounds' edges, likewise
+PATH_TOLERANCE = 0.02  # how far the drawn path may be off, in its own radii
 DOT = 0.01  # size of a roadmap's node, as a part of the eye's distance
 BACK_SIDE = 1  # three.js: draw the far wall only, so that the inside is visible
 
@@ -129,9 +130,10 @@ class _SceneBuilder:
         )
 
     def draw_motion(self, trajectory: Trajectory) -> None:
-        corners = _simplified(followed_points(self.robot, trajectory.configurations))
-        self.folders.append(("path", colours.PATH))
         radius = path_radius(self.robot.parts, self.size)
+        points = followed_points(self.robot, trajectory.configurations)
+        corners = _simplified(points, PATH_TOLERANCE * radius)
+        self.folders.append(("path", colours.PATH))
         self._draw_tube("path", self.embedding.points(corners), colours.PATH, radius)
         self.folders.append(("robot", colours.ROBOT))
         shades, slabs = link_colours(self.robot), (ABOVE, JOINTS)
@@ -227,14 +229,23 @@ def _box_edges(low: NDArray[np.float64], high: NDArray[np.float64]) -> list[NDAr
     return [corners[[i, i | 1 << k]] for i in range(2**n) for k in range(n) if not i >> k & 1]
 
 
-def _simplified(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Drop the points of (m, n) that lie on the straight line between their neighbours."""
+def _simplified(positions: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
+    """Return some of the points (m, n); the others are within the tolerance of the line drawn."""
     keep = [0]
     for index in range(1, len(positions) - 1):
-        before = positions[index] - positions[keep[-1]]
-        after = positions[index + 1] - positions[index]
-        if before @ after < (1.0 - 1e-12) * np.linalg.norm(before) * np.linalg.norm(after):
+        first, last = positions[keep[-1]], positions[index + 1]
+        if _farthest(positions[keep[-1] + 1 : index + 1], first, last) > tolerance:
             keep.append(index)
     if len(positions) > 1:
         keep.append(len(positions) - 1)
     return positions[keep]
+
+
+def _farthest(
+    points: NDArray[np.float64], first: NDArray[np.float64], last: NDArray[np.float64]
+) -> float:
+    """The largest distance of points (m, n) from a segment."""
+    way = last - first
+    square = float(way @ way)
+    along = np.clip((points - first) @ way / square, 0.0, 1.0) if square else np.zeros(len(points))
+    return float(np.linalg.norm(points - first - along[:, None] * way, axis=1).max())

@@ -18,11 +18,14 @@ def scene_page(scenario: Scenario, result: PlanResult | None) -> str:
     """The HTML text of a page with the scenario, and the result's path if there is one.
 
     With a result, the roadmap is what HighwayRoadmap explores between start and goal, whoever
-    planned; without one, the whole roadmap at the start's orientation, less its redundant nodes.
+    planned; without one, the start's layer of the whole roadmap, less its redundant nodes. There
+    is none where the robot's base is fixed.
     """
     from planners.view.meshcat_page import scene_html
 
-    roadmap = _start_layer(scenario) if result is None else _explored_roadmap(scenario)
+    roadmap = None
+    if scenario.robot.base_size:
+        roadmap = _start_layer(scenario) if result is None else _explored_roadmap(scenario)
     return scene_html(scenario, result, roadmap)
 
 

@@ -82,7 +82,9 @@ def _view(
     path: NDArray[np.float64],
 ) -> LayerSlice | JointSlice:
     """What the second panel shows of the configuration space."""
-    if scenario.robot.base_size == 0:
+    from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
+
+    if isinstance(cspace, ArticulatedCSpace) and cspace.articulated.base_size == 0:
         return JointSlice(cspace, configuration, path)
     return LayerSlice(cspace, configuration, _across(scenario))
 

@@ -32,9 +32,9 @@ def draw_joint_slice(axes: Axes, view: JointSlice, marked: str) -> None:
     _draw_free(axes, view)
     point = [_shown(joint, value) for joint, value in zip(view.joints, view.point, strict=True)]
     colour = colours.START if marked == "start" else colours.ROBOT
-    dot = {"markersize": 8, "markeredgecolor": "white", "zorder": 6, "linestyle": "none"}
+    dot = {"markersize": 8, "markeredgecolor": "white", "zorder": 6, "clip_on": False}
     label = marked if len(view.configuration) <= len(point) else f"{marked}, whose others are held"
-    axes.plot(*[*point, 0.5][:2], marker="o", color=colour, label=label, **dot)  # type: ignore[arg-type]
+    axes.plot(*[*point, 0.5][:2], "o", color=colour, label=label, **dot)  # type: ignore[arg-type]
     axes.set_xlabel(_label(view.joints[0]), fontsize=9)
     if len(view.joints) > 1:
         axes.set_ylabel(_label(view.joints[1]), fontsize=9)

@@ -13,8 +13,6 @@ from planners.view.links import followed_points, ghost_count, link_colours, link
 from planners.view.surfaces import ellipsoid_patches, path_radius, tube_patches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -24,6 +22,7 @@ if TYPE_CHECKING:
     from planners.view.trajectory import Trajectory
 
 SWEPT_POSES = 9
+SEEN_THROUGH = 0.4  # opacity
 SAME = 1e-4  # difference of bodies in one place, as a part of their size
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
 
@@ -36,7 +35,13 @@ class Painting:
         self._patches: list[NDArray[np.float64]] = []
         self._colours: list[NDArray[np.float64]] = []
 
-    def add(self, patches: NDArray[np.float64], colour: str, inside: bool = False) -> None:
+    def add(
+        self,
+        patches: NDArray[np.float64],
+        colour: str,
+        inside: bool = False,
+        alpha: float = 1.0,
+    ) -> None:
         """Add patches (m, 4, 3) of a convex surface: the side that faces the viewer.
 
         `inside` adds the far side instead, of which one sees the inner face, dimly shaded.
@@ -53,17 +58,19 @@ class Painting:
         lit = (0.5 + 0.5 * (normals[facing] @ LIGHT)) ** 1.5
         light = darkest + (brightest - darkest) * lit
         self._patches.append(seen[facing])
-        self._colours.append(np.clip(light[:, None] * colours.rgb(colour), 0.0, 1.0))
+        shades = np.clip(light[:, None] * colours.rgb(colour), 0.0, 1.0)
+        self._colours.append(np.column_stack([shades, np.full(len(shades), alpha)]))
 
-    def paint(self, axes: Axes, zorder: float, alpha: float = 1.0) -> None:
+    def paint(self, axes: Axes, zorder: float) -> None:
         """Paint everything added so far, and forget it."""
         from matplotlib.collections import PolyCollection
 
         patches, shades = np.concatenate(self._patches), np.concatenate(self._colours)
         order = np.argsort(patches[:, :, 2].mean(axis=1), kind="stable")
-        shades = np.column_stack([shades, np.full(len(shades), alpha)])[order]
+        shades = shades[order]
+        opaque = shades[:, 3] == 1.0
         # Opaque patches get an edge of their own colour, or the background shows between them.
-        edges = shades if alpha == 1.0 else "none"
+        edges = shades * opaque[:, None]
         axes.add_collection(
             PolyCollection(
                 list(patches[order, :, :2]),
@@ -71,7 +78,7 @@ class Painting:
                 edgecolors=edges,
                 linewidths=0.4,
                 zorder=zorder,
-                antialiased=alpha == 1.0,
+                antialiaseds=opaque,
             )
         )
         self._patches, self._colours = [], []
@@ -96,11 +103,15 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     painting = Painting(workspace_camera(scenario))
     axes.set_title("Workspace", loc="left", fontsize=11)
     if world.arenas:
-        _add_bodies(painting, world.arenas, colours.tint(colours.ARENA, 0.65), inside=True)
-        painting.paint(axes, 1, 1.0 if len(world.arenas) == 1 else 0.5)
+        alpha = 1.0 if len(world.arenas) == 1 else 0.5
+        for arena in world.arenas:
+            wall = ellipsoid_patches(arena, 96, 48)
+            painting.add(wall, colours.tint(colours.ARENA, 0.65), inside=True, alpha=alpha)
+        painting.paint(axes, 1)
     else:
         _draw_floor(axes, painting.camera, scenario)
-    _add_bodies(painting, world.obstacles, colours.OBSTACLE)
+    for obstacle in world.obstacles:
+        painting.add(ellipsoid_patches(obstacle, 96, 48), colours.OBSTACLE)
     drawn = _add_ends(painting, scenario)
     if trajectory is not None:
         _add_swept(painting, scenario, trajectory, drawn)
@@ -108,13 +119,6 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     axes.set_aspect("equal", anchor="N")
     axes.autoscale_view()
     axes.set_axis_off()
-
-
-def _add_bodies(
-    painting: Painting, bodies: Iterable[Ellipsoid], colour: str, inside: bool = False
-) -> None:
-    for body in bodies:
-        painting.add(ellipsoid_patches(body, 96, 48), colour, inside)
 
 
 def _add_ends(painting: Painting, scenario: Scenario) -> set[bytes]:
@@ -136,11 +140,16 @@ def _add_ends(painting: Painting, scenario: Scenario) -> set[bytes]:
 
 
 def _add_once(
-    painting: Painting, body: Ellipsoid, colour: str, fineness: int, drawn: set[bytes]
+    painting: Painting,
+    body: Ellipsoid,
+    colour: str,
+    fineness: int,
+    drawn: set[bytes],
+    alpha: float = 1.0,
 ) -> None:
     """Add a body unless it is drawn: of two in one place one would see a bit of each."""
     if _place(body) not in drawn:
-        painting.add(ellipsoid_patches(body, fineness, fineness // 2), colour)
+        painting.add(ellipsoid_patches(body, fineness, fineness // 2), colour, alpha=alpha)
         drawn.add(_place(body))
 
 
@@ -162,9 +171,11 @@ def _add_swept(
 ) -> None:
     robot = scenario.robot
     shades = {link: colours.tint(hue, 0.3) for link, hue in link_colours(robot).items()}
+    # On a fixed base all poses are in one place, and would hide the start and the goal.
+    alpha = 1.0 if robot.base_size else SEEN_THROUGH
     for configuration in trajectory.evenly(ghost_count(robot, SWEPT_POSES))[1:-1]:
         for body, link in zip(robot.bodies_at(configuration), robot.part_links, strict=True):
-            _add_once(painting, body, shades[link], 40, drawn)
+            _add_once(painting, body, shades[link], 40, drawn, alpha)
     positions = followed_points(robot, trajectory.configurations)
     radius = path_radius(scenario.robot.parts, 0.5 * painting.camera.distance)
     painting.add(tube_patches(positions, radius, sides=6), colours.PATH)

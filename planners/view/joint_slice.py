@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ellipsoid_planning.robots.joint import BALL, FIXED
+from ellipsoid_planning.robots.joint import BALL
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
     from ellipsoid_planning.robots import Joint
 
 SHOWN = 2
-CELLS = 160
+CELLS = 240
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,19 +31,20 @@ class JointSlice:
     Attributes:
         cspace: of the robot.
         configuration: (d,), whose joints are held.
-        path: (m, d); the joints that it moves farthest, against their limits, are shown.
+        path: (m, d); the joints that it moves farthest, in OMPL's metric, are shown.
     """
 
-    cspace: CSpace
+    cspace: ArticulatedCSpace
     configuration: NDArray[np.float64]
     path: NDArray[np.float64]
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """The joints shown: at most two, and no ball joints."""
-        robot = self.cspace.robot
-        single = [joint for joint in robot.joints if joint.type not in (BALL, FIXED)]
-        moved = [np.ptp(self._values(self.path, j)) / (j.upper - j.lower) for j in single]
+        robot = self.cspace.articulated
+        weights = dict(zip(robot.joint_names, robot.joint_weights, strict=True))
+        single = [joint for joint in robot.moving_joints if joint.type != BALL]
+        moved = [weights[joint.name] * np.ptp(self._values(self.path, joint)) for joint in single]
         farthest = sorted(np.argsort(np.negative(moved), kind="stable")[:SHOWN])
         return tuple(single[i] for i in farthest)
 
@@ -63,9 +64,11 @@ class JointSlice:
         grid = np.meshgrid(*along)
         configurations = np.tile(self.configuration, (grid[0].size, 1))
         for joint, values in zip(self.joints, grid, strict=True):
-            configurations[:, self.cspace.robot.joint_slices[joint.name]] = values.reshape(-1, 1)
+            configurations[:, self.cspace.articulated.joint_slices[joint.name]] = values.reshape(
+                -1, 1
+            )
         return self.cspace.are_valid(configurations).reshape(grid[0].shape)
 
     def _values(self, configurations: NDArray[np.float64], joint: Joint) -> NDArray[np.float64]:
-        column = self.cspace.robot.joint_slices[joint.name].start
+        column = self.cspace.articulated.joint_slices[joint.name].start
         return np.asarray(configurations[..., column])

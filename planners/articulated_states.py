@@ -95,3 +95,17 @@ def articulated_motion_check(
         return free
 
     return check
+
+
+def articulated_reader(cspace: ArticulatedCSpace) -> Callable[[ob.State], NDArray[np.float64]]:
+    """From a state to its configuration (d,), a view that holds until the next call."""
+    space = state_space(cspace)
+    serialize = space.serialize
+    buffer = StateValues(space, 1, cspace.robot.configuration_size)
+    place, values = buffer.places[0], buffer.values[0]  # the view keeps the memory alive
+
+    def read(state: ob.State) -> NDArray[np.float64]:
+        serialize(place, state)
+        return values
+
+    return read

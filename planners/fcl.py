@@ -8,6 +8,9 @@ are checked the way OMPL does by default, state by state at a resolution.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import fcl
@@ -17,9 +20,12 @@ from ompl import base as ob
 
 from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.kernels.kinematics import pair_matrix
 from ellipsoid_planning.world import World
 
-from .spaces import check_space, state_access
+from .articulated_states import articulated_reader
+from .placing import PartPlaces, homogeneous
+from .spaces import check_space, is_articulated, state_access
 from .validity import state_check
 
 if TYPE_CHECKING:
@@ -54,16 +60,39 @@ class FclBodies:
         self._obstacles.registerObjects([_placed(body) for body in obstacles])
         self._obstacles.setup()
         self._any = bool(cspace.world.obstacles)
+        self._places = PartPlaces(cspace.robot)
+        self._request = fcl.CollisionRequest()
+        self._pairs = [(self._parts[i], self._parts[j]) for i, j in self_pairs(cspace)]
 
     def place(self, rotation: NDArray[np.float64], position: NDArray[np.float64]) -> None:
-        """Move the robot's base to ``position`` (3,) with ``rotation`` (3, 3), world frame."""
+        """Move a rigid robot's base to ``position`` (3,) with ``rotation`` (3, 3), world frame."""
         rotations = rotation @ self._part_rotations
         centres = self._part_centres @ rotation.T + self._scale * position
+        self._move(rotations, centres)
+
+    def place_at(self, configuration: NDArray[np.float64]) -> None:
+        """Move the robot, rigid or articulated, to a configuration (d,)."""
+        rotations, centres = self._places(configuration)
+        self._move(rotations, self._scale * centres)
+
+    def _move(self, rotations: NDArray[np.float64], centres: NDArray[np.float64]) -> None:
         for part, turned, centre in zip(self._parts, rotations, centres, strict=True):
             part.setRotation(turned)
             part.setTranslation(centre)
 
     def collide(self) -> bool:
+        """Whether any part meets an obstacle, or another part that it may not meet."""
+        return self.meets_obstacle() or self.meets_itself()
+
+    def meets_itself(self) -> bool:
+        """Whether any part meets another part that it may not meet."""
+        for first, second in self._pairs:
+            result = fcl.CollisionResult()
+            if fcl.collide(first, second, self._request, result):
+                return True
+        return False
+
+    def meets_obstacle(self) -> bool:
         """Whether any part meets any obstacle."""
         for part in self._parts if self._any else ():
             data = fcl.CollisionData()  # a used result object would keep its old contacts
@@ -85,6 +114,9 @@ class FclBodies:
 class FclValidityChecker(ob.StateValidityChecker):
     """Valid: FCL finds no contact, and our kernels find the state inside arenas and bounds.
 
+    The parts of an articulated robot are placed in numpy, and FCL looks at the same pairs of them
+    as our kernels do, which decide the joints' limits.
+
     A clearance that the scenario requires is measured with FCL's distance query.
 
     Attributes:
@@ -100,39 +132,26 @@ class FclValidityChecker(ob.StateValidityChecker):
         super().__init__(si)
         check_space(si.getStateSpace(), cspace)
         self.cspace = cspace
-        self._access = state_access(cspace)
-        self._enclosure = _without_obstacles(cspace)
+        self._read = _reader(cspace)
+        self._enclosure = _enclosure(cspace)
         self._is_enclosed = state_check(self._enclosure)
         self._bodies = FclBodies(cspace)
-        self._fixed = _embedded_rotation(cspace.robot.orientation)
 
     def isValid(self, state: ob.State) -> bool:  # noqa: N802
         """Whether ``state`` is valid."""
         if not self._is_enclosed(state):
             return False
-        self._place(np.array(self._access.read(state)))
+        self._bodies.place_at(self._read(state))
         required = self.cspace.clearance_required
-        if required > 0.0:
-            return self._bodies.distance() >= required
+        if required > 0.0:  # the parts keep it from obstacles, not from each other
+            return self._bodies.distance() >= required and not self._bodies.meets_itself()
         return not self._bodies.collide()
 
     def clearance(self, state: ob.State) -> float:
         """Distance to obstacles by FCL and to arenas by our kernels; not positive in collision."""
-        configuration = np.array(self._access.read(state))
-        self._place(configuration)
+        configuration = self._read(state)
+        self._bodies.place_at(configuration)
         return min(self._bodies.distance(), float(self._enclosure.clearance(configuration)))
-
-    def _place(self, configuration: NDArray[np.float64]) -> None:
-        dimension = self.cspace.dimension
-        position = np.zeros(3)
-        position[:dimension] = configuration[:dimension]
-        if not self.cspace.rotates:
-            rotation = self._fixed
-        elif dimension == 2:
-            rotation = _about_z(configuration[2])
-        else:
-            rotation = _from_quaternion(configuration[3:])
-        self._bodies.place(rotation, position)
 
 
 def check_motions_discretely(si: ob.SpaceInformation, resolution: float = RESOLUTION) -> None:
@@ -148,10 +167,29 @@ def check_motions_discretely(si: ob.SpaceInformation, resolution: float = RESOLU
     si.setStateValidityCheckingResolution(resolution)
 
 
-def _without_obstacles(cspace: CSpace) -> CSpace:
-    world = cspace.world
+def _reader(cspace: CSpace) -> Callable[[ob.State], NDArray[np.float64]]:
+    if is_articulated(cspace):
+        return articulated_reader(cspace)
+    read = state_access(cspace).read
+    return lambda state: np.array(read(state))
+
+
+def self_pairs(cspace: CSpace) -> list[tuple[int, int]]:
+    """Numbers of the parts that may not meet each other."""
+    if not is_articulated(cspace):
+        return []
+    first, second = np.nonzero(np.triu(pair_matrix(cspace.kinematics)))
+    return list(zip(first.tolist(), second.tolist(), strict=True))
+
+
+def _enclosure(cspace: CSpace) -> CSpace:
+    """``cspace`` with bounds, limits and arenas alone."""
+    world, robot = cspace.world, cspace.robot
     empty = World(low=world.low, high=world.high, arenas=world.arenas)
-    return type(cspace)(empty, cspace.robot, cspace.clearance_required)
+    if is_articulated(cspace):
+        links = [link.name for link in cspace.robot.links]
+        robot = replace(cspace.robot, ignored=frozenset(map(frozenset, combinations(links, 2))))
+    return type(cspace)(empty, robot, cspace.clearance_required)
 
 
 def _scaled(body: Ellipsoid, scale: float) -> Ellipsoid:
@@ -164,35 +202,10 @@ def _shape(body: Ellipsoid) -> fcl.Ellipsoid:
 
 
 def _placement(body: Ellipsoid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    centre = np.zeros(3)
-    centre[: body.dimension] = body.centre
-    return _embedded_rotation(body.rotation), centre
+    transform = homogeneous(body.centre, body.rotation)
+    return transform[:3, :3], transform[:3, 3]
 
 
 def _placed(body: Ellipsoid) -> fcl.CollisionObject:
     rotation, centre = _placement(body)
     return fcl.CollisionObject(_shape(body), fcl.Transform(rotation, centre))
-
-
-def _embedded_rotation(rotation: NDArray[np.float64] | None) -> NDArray[np.float64]:
-    embedded = np.eye(3)
-    if rotation is not None:
-        n = rotation.shape[0]
-        embedded[:n, :n] = rotation
-    return embedded
-
-
-def _about_z(yaw: float) -> NDArray[np.float64]:
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _from_quaternion(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    x, y, z, w = quaternion.tolist()
-    return np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )

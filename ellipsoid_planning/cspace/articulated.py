@@ -29,6 +29,7 @@ from ellipsoid_planning.kernels import (
     kinematics,
     layout,
 )
+from ellipsoid_planning.kernels.robot_model import new_articulated_model
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
 from ellipsoid_planning.world import World
 
@@ -65,6 +66,11 @@ class ArticulatedCSpace(CSpace):
         bodies = bodies_of(robot)
         self.scene = pack_articulated_scene(world, robot, bodies, self.clearance_required)
         self.kinematics = pack_kinematics(robot, bodies)
+
+    @property
+    def model(self) -> Any:
+        """What kernels know of robot and world, workspaces included (kernels.robot_model)."""
+        return new_articulated_model(self.scene, self.kinematics)
 
     def poses(self, configurations: ArrayLike) -> Array:
         """Rows (m, 7 + V) of configurations (m, d) or (d,); see cspace.articulated_rows."""

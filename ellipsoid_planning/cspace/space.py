@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,6 +71,11 @@ class CSpace:
         self.world, self.robot = world, robot
         self.clearance_required = float(clearance)
         self.scene = pack_scene(world, robot, self.clearance_required)
+
+    @property
+    def model(self) -> Any:
+        """What kernels know of robot and world (kernels.robot_model)."""
+        return self.scene
 
     @property
     def dimension(self) -> int:

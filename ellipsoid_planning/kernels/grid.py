@@ -5,13 +5,22 @@ import math
 import numpy as np
 
 from .compile import inlined, kernel
+from .roadmap_metric import turn_length
 
 # First entry of a layer's row of neighbours that has not been looked for yet.
 UNKNOWN = -2
 
 
 @kernel
-def find_nearest(orientations, neighbours, layer, own, joined):
+def _apart(joints, p, q, weight):
+    """What orders layers by their distance; without joints the cosine does, which is cheaper."""
+    if joints.shape[0] > 0:
+        return turn_length(joints, p, q, weight)
+    return 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
+
+
+@kernel
+def find_nearest(orientations, joints, neighbours, layer, own, joined, weight):
     """Enter the nearest ``joined`` of the first ``own`` layers in the row of ``layer``."""
     p = orientations[layer]
     distances = np.empty(joined)
@@ -20,7 +29,7 @@ def find_nearest(orientations, neighbours, layer, own, joined):
         neighbours[layer, k] = -1
     for other in range(own):
         q = orientations[other]
-        distance = 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
+        distance = _apart(joints, p, q, weight)
         if other == layer or distance >= distances[joined - 1]:
             continue
         k = joined - 1
@@ -81,20 +90,25 @@ def find_column(columns, neighbours, count, distances, passing, joins, x, y, z):
 
 
 @kernel
-def find_layer(orientations, neighbours, count, distances, passing, joins, q, joined):
-    """Index of the layer with exactly the quaternion ``q`` (4,): an old one, or ``count``.
+def find_layer(
+    orientations, joints, neighbours, count, distances, passing, joins, q, joined, weight
+):
+    """Index of the layer with exactly the row ``q`` (4 + V,): an old one, or ``count``.
 
     A new one is written there and joined to its ``joined`` nearest layers that are not
     ``passing`` (L,); both ways if ``joins``, else it is passing itself.
     """
     for k in range(count):
         p = orientations[k]
-        distances[k] = 1.0 - abs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
-        if p[0] == q[0] and p[1] == q[1] and p[2] == q[2] and p[3] == q[3]:
+        distances[k] = _apart(joints, p, q, weight)
+        same = True
+        for m in range(q.shape[0]):
+            same = same and p[m] == q[m]
+        if same:
             return k
         if passing[k]:
             distances[k] = math.inf
-    for m in range(4):
+    for m in range(q.shape[0]):
         orientations[count, m] = q[m]
     passing[count] = not joins
     _join_nearest(distances, neighbours, count, joined, joined, joins)

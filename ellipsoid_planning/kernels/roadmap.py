@@ -19,7 +19,7 @@ from .containers import pop
 from .grid import UNKNOWN, find_nearest
 from .layout import new_placed
 from .lines import CAPACITY
-from .roadmap_metric import across, angle, apart, heuristic, step_length, write_pose
+from .roadmap_metric import across, apart, heuristic, step_length, turn_length, write_pose
 from .roadmap_nodes import line_nodes, node_at
 from .roadmap_open import open_entry
 from .roadmap_passages import OFFERS, offer_new_passages, offer_passages, pass_through
@@ -58,6 +58,7 @@ from .roadmap_tables import (
     SOLVED,
     STEPS,
 )
+from .robot_model import scene_of
 
 # Rise over run beyond which intervals that do not overlap are not worth trying to join.
 _STEEPEST = 3.0
@@ -74,18 +75,21 @@ def _promise(rm, node, layer, column, axis, goals, inflation, weight):
             step += (rm.columns[own_column, m] - rm.columns[column, m]) ** 2
     step = math.sqrt(step)
     if layer != own_layer:
-        step += weight * angle(rm.orientations, own_layer, layer)
+        own, other = rm.orientations[own_layer], rm.orientations[layer]
+        step += turn_length(rm.joints, own, other, weight)
     cost = rm.node_reals[node, NODE_COST] + step
-    ahead = heuristic(rm.orientations, rm.columns, layer, column, entry, axis, goals, weight)
+    ahead = heuristic(
+        rm.orientations, rm.joints, rm.columns, layer, column, entry, axis, goals, weight
+    )
     line = layer * COLUMN_STRIDE + column
     open_entry(rm, cost + inflation * ahead, cost, entry, -1, node, line)
 
 
 @inlined
-def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals):
+def _open_edges(model, rm, parent, line, axis, goals, inflation, weight, intervals):
     """Look at a promised line: open the edges from ``parent`` to its nodes."""
     layer, column = line // COLUMN_STRIDE, line % COLUMN_STRIDE
-    first, count = line_nodes(scene, rm, layer, column, axis, intervals)
+    first, count = line_nodes(model, rm, layer, column, axis, intervals)
     entry = rm.node_reals[parent, NODE_ENTRY]
     for node in range(first, first + count):
         if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
@@ -101,9 +105,20 @@ def _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, interva
             za, zb, exists = crossing(rm.node_reals, parent, node, entry, 3)
         cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
         cost += step_length(
-            rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
+            rm.orientations,
+            rm.joints,
+            rm.columns,
+            rm.node_integers,
+            parent,
+            za,
+            node,
+            zb,
+            axis,
+            weight,
         )
-        ahead = heuristic(rm.orientations, rm.columns, layer, column, zb, axis, goals, weight)
+        ahead = heuristic(
+            rm.orientations, rm.joints, rm.columns, layer, column, zb, axis, goals, weight
+        )
         open_entry(rm, cost + inflation * ahead, cost, za, node, parent, line)
 
 
@@ -128,7 +143,7 @@ def _expand(rm, node, axis, goals, inflation, weight):
             _promise(rm, node, layer, other, axis, goals, inflation, weight)
     if rm.layer_neighbours[layer, 0] == UNKNOWN:
         own, joined = rm.counters[OWN_LAYERS], rm.counters[JOINED]
-        find_nearest(rm.orientations, rm.layer_neighbours, layer, own, joined)
+        find_nearest(rm.orientations, rm.joints, rm.layer_neighbours, layer, own, joined, weight)
     for k in range(rm.layer_neighbours.shape[1]):
         other = rm.layer_neighbours[layer, k]
         if other >= 0:
@@ -137,16 +152,16 @@ def _expand(rm, node, axis, goals, inflation, weight):
 
 
 @inlined
-def _meets_goal(scene, rm, node, axis, goals, ends, placed):
+def _meets_goal(model, rm, node, axis, goals, ends, placed):
     """The goal to which the direct motion from ``node`` is proved free, or −1."""
     entry = rm.node_reals[node, NODE_ENTRY]
     write_pose(rm.orientations, rm.columns, rm.node_integers, node, entry, axis, ends[0])
     for k in range(goals.shape[0]):
         for m in range(3):
             ends[1, m] = goals[k, 1 + m]
-        for m in range(4):
+        for m in range(rm.orientations.shape[1]):
             ends[1, 3 + m] = rm.orientations[int(goals[k, 0]), m]
-        proved = middle_is_free(scene, ends, placed) and is_proved(scene, rm, ends)
+        proved = middle_is_free(model, rm, ends, placed) and is_proved(model, rm, ends)
         rm.counters[PROVED if proved else REFUTED] += 1
         if proved:
             return k
@@ -154,7 +169,7 @@ def _meets_goal(scene, rm, node, axis, goals, ends, placed):
 
 
 @kernel
-def begin(scene, rm, starts, goals, axis, inflation, weight):
+def begin(model, rm, starts, goals, axis, inflation, weight):
     """Start a query: rows of ``starts`` and ``goals`` are (layer, x, y, z, column)."""
     intervals = np.empty((CAPACITY, 2))
     rm.counters[QUERY] += 1
@@ -167,8 +182,10 @@ def begin(scene, rm, starts, goals, axis, inflation, weight):
     for k in range(starts.shape[0]):
         swept = starts[k, 1 + axis]
         layer, column = int(starts[k, 0]), int(starts[k, 4])
-        node = node_at(scene, rm, layer, column, swept, axis, intervals)
-        ahead = heuristic(rm.orientations, rm.columns, layer, column, swept, axis, goals, weight)
+        node = node_at(model, rm, layer, column, swept, axis, intervals)
+        ahead = heuristic(
+            rm.orientations, rm.joints, rm.columns, layer, column, swept, axis, goals, weight
+        )
         open_entry(rm, inflation * ahead, 0.0, swept, node, -1, -1)
     return SEARCHING
 
@@ -189,15 +206,15 @@ def _has_room(rm):
 
 
 @kernel
-def search(scene, rm, goals, axis, inflation, weight, steps):
+def search(model, rm, goals, axis, inflation, weight, steps):
     """Up to ``steps`` steps of the search: SEARCHING, SOLVED, EXHAUSTED or GROW.
 
     When SOLVED, counters[GOAL_REACHED] packs the last node and the goal:
     node · (number of goals) + goal.
     """
     intervals = np.empty((CAPACITY, 2))
-    ends = np.empty((2, 7))
-    placed = new_placed(scene)
+    ends = np.empty((2, 3 + rm.orientations.shape[1]))
+    placed = new_placed(scene_of(model))
     if not _has_room(rm):
         return GROW
     offer_new_passages(rm, axis, goals, inflation, weight)
@@ -217,11 +234,11 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
         via = -1
         if line <= FIRST_PASSAGE:
             via = FIRST_PASSAGE - line
-            node = pass_through(scene, rm, parent, via, axis, ends, placed, intervals)
+            node = pass_through(model, rm, parent, via, axis, ends, placed, intervals)
             if node < 0:
                 continue
         elif node < 0:
-            _open_edges(scene, rm, parent, line, axis, goals, inflation, weight, intervals)
+            _open_edges(model, rm, parent, line, axis, goals, inflation, weight, intervals)
             continue
         if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
             continue
@@ -233,15 +250,24 @@ def search(scene, rm, goals, axis, inflation, weight, steps):
             _reach(rm, node, parent, leave, other[1 + axis], cost, via)
         else:
             entry = rm.node_reals[parent, NODE_ENTRY]
-            za, zb, proved = prove_edge(scene, rm, parent, node, entry, axis, ends)
+            za, zb, proved = prove_edge(model, rm, parent, node, entry, axis, ends)
             if not proved:
                 continue
             cost = rm.node_reals[parent, NODE_COST] + abs(entry - za)
             cost += step_length(
-                rm.orientations, rm.columns, rm.node_integers, parent, za, node, zb, axis, weight
+                rm.orientations,
+                rm.joints,
+                rm.columns,
+                rm.node_integers,
+                parent,
+                za,
+                node,
+                zb,
+                axis,
+                weight,
             )
             _reach(rm, node, parent, za, zb, cost, -1)
-        goal = _meets_goal(scene, rm, node, axis, goals, ends, placed)
+        goal = _meets_goal(model, rm, node, axis, goals, ends, placed)
         if goal >= 0:
             rm.counters[GOAL_REACHED] = node * goals.shape[0] + goal
             return SOLVED

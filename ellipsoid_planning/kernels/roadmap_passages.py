@@ -41,7 +41,9 @@ def offer_passages(rm, node, first, axis, goals, inflation, weight):
         if rm.end_integers[end, END_USED] == query:
             continue
         row = rm.end_reals[end : end + 1]
-        away = heuristic(rm.orientations, rm.columns, layer, column, entry, axis, row, weight)
+        away = heuristic(
+            rm.orientations, rm.joints, rm.columns, layer, column, entry, axis, row, weight
+        )
         tried = rm.end_integers[end, END_TRIED] == query
         if tried and away > NEARER * rm.end_reals[end, END_NEAREST]:
             continue
@@ -54,7 +56,15 @@ def offer_passages(rm, node, first, axis, goals, inflation, weight):
             place = int(other[0]), int(other[4]), other[1 + axis]
             priority = cost + other[END_LENGTH]
             priority += inflation * heuristic(
-                rm.orientations, rm.columns, place[0], place[1], place[2], axis, goals, weight
+                rm.orientations,
+                rm.joints,
+                rm.columns,
+                place[0],
+                place[1],
+                place[2],
+                axis,
+                goals,
+                weight,
             )
         # What was found because the search got nowhere else goes ahead of everything.
         open_entry(rm, priority, cost, entry, -1, node, FIRST_PASSAGE - end)
@@ -71,7 +81,7 @@ def offer_new_passages(rm, axis, goals, inflation, weight):
 
 
 @inlined
-def pass_through(scene, rm, parent, end, axis, ends, placed, intervals):
+def pass_through(model, rm, parent, end, axis, ends, placed, intervals):
     """The node at the other side of a passage that is entered from ``parent``, or −1."""
     if rm.end_integers[end, END_USED] == rm.counters[QUERY]:
         return -1
@@ -79,9 +89,9 @@ def pass_through(scene, rm, parent, end, axis, ends, placed, intervals):
     write_pose(rm.orientations, rm.columns, rm.node_integers, parent, entry, axis, ends[0])
     for m in range(3):
         ends[1, m] = rm.end_reals[end, 1 + m]
-    for m in range(4):
+    for m in range(rm.orientations.shape[1]):
         ends[1, 3 + m] = rm.orientations[int(rm.end_reals[end, 0]), m]
-    if not (middle_is_free(scene, ends, placed) and is_proved(scene, rm, ends)):
+    if not (middle_is_free(model, rm, ends, placed) and is_proved(model, rm, ends)):
         rm.counters[REFUTED] += 1
         return -1
     rm.counters[PROVED] += 1
@@ -89,4 +99,4 @@ def pass_through(scene, rm, parent, end, axis, ends, placed, intervals):
     rm.end_integers[end, END_USED] = rm.counters[QUERY]
     rm.end_integers[end ^ 1, END_USED] = rm.counters[QUERY]
     other = rm.end_reals[end ^ 1]
-    return node_at(scene, rm, int(other[0]), int(other[4]), other[1 + axis], axis, intervals)
+    return node_at(model, rm, int(other[0]), int(other[4]), other[1 + axis], axis, intervals)

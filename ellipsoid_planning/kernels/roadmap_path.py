@@ -20,11 +20,11 @@ def _append(path, count, pose):
     """Add a pose unless it repeats the last one; returns the new count."""
     if count > 0:
         same = True
-        for m in range(7):
+        for m in range(path.shape[1]):
             same = same and path[count - 1, m] == pose[m]
         if same:
             return count
-    for m in range(7):
+    for m in range(path.shape[1]):
         path[count, m] = pose[m]
     return count + 1
 
@@ -54,13 +54,13 @@ def path_room(rm, last):
 
 
 @kernel
-def trace(scene, rm, last, goal, goals, axis, path):
+def trace(model, rm, last, goal, goals, axis, path):
     """Write the path from the start over node ``last`` to a goal to ``path``: its length.
 
     Edges are proved already; the moves along intervals are proved here, once more than their ends
     were. Returns 0 if one is refused, which only bodies of extreme shape can bring about.
     """
-    ends = np.empty((2, 7))
+    ends = np.empty((2, path.shape[1]))
     # Links point backwards: turn them round, in the column that this query is done with.
     node, after = last, -1
     while node >= 0:
@@ -77,13 +77,13 @@ def trace(scene, rm, last, goal, goals, axis, path):
         via = rm.node_integers[node, NODE_VIA]
         if via >= 0:
             count = _append_passage(rm, via, path, count)
-        if leave != entry and not is_proved(scene, rm, ends):
+        if leave != entry and not is_proved(model, rm, ends):
             return 0
         count = _append(path, count, ends[0])
         count = _append(path, count, ends[1])
         node = following
     for m in range(3):
         ends[0, m] = goals[goal, 1 + m]
-    for m in range(4):
+    for m in range(rm.orientations.shape[1]):
         ends[0, 3 + m] = rm.orientations[int(goals[goal, 0]), m]
     return _append(path, count, ends[0])

@@ -1,13 +1,12 @@
 """Edges of the roadmap, proved when the search first wants to use them."""
 
+import math
+
 from .compile import inlined, kernel
 from .containers import EMPTY, lookup, store
-from .layout import CLEARANCE
-from .motion import prove_motion
-from .placement import place
-from .roadmap_metric import write_pose
+from .roadmap_metric import METRIC_BALL, METRIC_CONTINUOUS, write_pose
 from .roadmap_tables import EDGES, NODE_BITS, NODE_HIGH, NODE_LOW, PROVED, REFUTED
-from .validity import placed_is_free
+from .robot_model import pose_is_free, prove_way
 
 
 @kernel
@@ -31,39 +30,41 @@ def crossing(nodes, a, b, entry, choice):
 
 
 @inlined
-def is_proved(scene, rm, ends):
+def is_proved(model, rm, ends):
     """Whether the motion between the two poses ``ends`` is proved free."""
-    proofs = prove_motion(
-        scene, ends[0], ends[1], scene[CLEARANCE], rm.motion, rm.motion_placed, rm.motion_stack
-    )
-    return proofs > 0
+    return prove_way(model, ends[0], ends[1], rm.motion) > 0
 
 
 @inlined
-def middle_is_free(scene, ends, placed):
+def middle_is_free(model, rm, ends, placed):
     """Whether the robot is free half-way, which most long motions that are not free show."""
-    first, last = ends[0], ends[1]
+    first, last, middle = ends[0], ends[1], rm.pose
+    for m in range(middle.shape[0]):
+        middle[m] = 0.5 * (first[m] + last[m])
+    _set_middle(first, last, 3, middle)
+    for j in range(rm.joints.shape[0]):
+        kind, at = int(rm.joints[j, 0]), 3 + int(rm.joints[j, 1])
+        if kind == METRIC_BALL:
+            _set_middle(first, last, at, middle)
+        elif kind == METRIC_CONTINUOUS and abs(last[at] - first[at]) > math.pi:
+            middle[at] += math.pi if middle[at] < 0.0 else -math.pi
+    return pose_is_free(model, middle, placed)
+
+
+@kernel
+def _set_middle(first, last, at, middle):
+    """Write the quaternion half-way between those at ``at`` of two rows, of any length."""
     dot = 0.0
-    for m in range(3, 7):
-        dot += first[m] * last[m]
+    for m in range(4):
+        dot += first[at + m] * last[at + m]
     # The sum of two unit quaternions, the shorter way round, points half-way between them.
     sign = -1.0 if dot < 0.0 else 1.0
-    place(
-        scene,
-        0.5 * (first[0] + last[0]),
-        0.5 * (first[1] + last[1]),
-        0.5 * (first[2] + last[2]),
-        first[3] + sign * last[3],
-        first[4] + sign * last[4],
-        first[5] + sign * last[5],
-        first[6] + sign * last[6],
-        placed,
-    )
-    return placed_is_free(scene, placed)
+    for m in range(4):
+        middle[at + m] = first[at + m] + sign * last[at + m]
 
 
 @inlined
-def prove_edge(scene, rm, a, b, entry, axis, ends):
+def prove_edge(model, rm, a, b, entry, axis, ends):
     """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
     key = (min(a, b) << NODE_BITS) | max(a, b)
     known = lookup(rm.edges, key)
@@ -79,7 +80,7 @@ def prove_edge(scene, rm, a, b, entry, axis, ends):
             continue
         write_pose(rm.orientations, rm.columns, rm.node_integers, a, za, axis, ends[0])
         write_pose(rm.orientations, rm.columns, rm.node_integers, b, zb, axis, ends[1])
-        proved = is_proved(scene, rm, ends)
+        proved = is_proved(model, rm, ends)
         if proved:
             break
     edge = rm.counters[EDGES]

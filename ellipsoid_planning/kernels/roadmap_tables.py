@@ -79,7 +79,7 @@ class Roadmap(NamedTuple):
     """The arrays of one roadmap; all but the first eight grow (kernels.roadmap tells how).
 
     Attributes:
-        orientations: quaternions of the layers (L, 4).
+        orientations: quaternions of the layers, then the values of joints (L, 4 + V).
         layer_neighbours: rows (L, K) of layers, filled up with −1; the grid's own neighbours of
             a layer are looked for when it is first expanded.
         columns: base positions (C, 3), swept coordinate 0.
@@ -95,9 +95,12 @@ class Roadmap(NamedTuple):
         entry_reals: (N, 2): cost so far, swept coordinate at the parent.
         entry_integers: (N, 3): target node or −1, parent node, line of a promise.
         end_reals, end_integers: tables of the ends of passages.
-        passage_poses: (P, 7), the poses of all passages.
+        passage_poses: (P, 7 + V), the poses of all passages.
         counters: (COUNTERS,).
-        motion, motion_placed, motion_stack: workspaces of kernels.motion.
+        motion: workspaces of kernels.motion.
+        joints: (J, METRIC), what joints count (kernels.roadmap_metric); none for rigid robots.
+        usable: (L,), which of the placed layers' robots do not meet themselves.
+        pose: workspace for one row.
     """
 
     orientations: NDArray[np.float64]
@@ -124,6 +127,7 @@ class Roadmap(NamedTuple):
     end_integers: NDArray[np.int64]
     passage_poses: NDArray[np.float64]
     counters: NDArray[np.int64]
-    motion: NDArray[np.float64]
-    motion_placed: NDArray[np.float64]
-    motion_stack: NDArray[np.float64]
+    motion: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+    joints: NDArray[np.float64]
+    usable: NDArray[np.bool_]
+    pose: NDArray[np.float64]

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.kernels.motion import motions_are_free
+from ellipsoid_planning.kernels.grid import find_nearest
+from ellipsoid_planning.kernels.robot_model import ways_are_free
+from ellipsoid_planning.metric import turn_length
 from ellipsoid_planning.roadmap.graph import RoadmapGraph
 from ellipsoid_planning.roadmap.grid import grid_columns
-from ellipsoid_planning.roadmap.orientations import nearest, spread_orientations
+from ellipsoid_planning.roadmap.joint_layers import layer_metric, spread_layers
+from ellipsoid_planning.roadmap.orientations import spread_orientations
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 
 Array = NDArray[np.float64]
@@ -22,13 +25,17 @@ def layer_orientations(cspace: CSpace, count: int | None = None) -> Array:
 
     ``count`` layers, or as many as the planner has by default; one if the robot does not rotate.
     """
+    if isinstance(cspace, ArticulatedCSpace):
+        count = RoadmapParameters(layers=count).layer_count(cspace.dimension, articulated=True)
+        layers = spread_layers(cspace, count)
+        return cspace.configurations(np.column_stack([np.zeros((len(layers), 3)), layers]))
     rows = np.zeros((1, 7))
     rows[0, 6] = 1.0
     if cspace.rotates:
         count = RoadmapParameters(layers=count).layer_count(cspace.dimension)
         quaternions = spread_orientations(cspace.dimension, count)
         rows = np.column_stack([np.zeros((len(quaternions), 3)), quaternions])
-    return configurations_from_poses(cspace.robot, rows)
+    return cspace.configurations(rows)
 
 
 def eager_roadmap(
@@ -61,15 +68,15 @@ def eager_roadmap(
     lines = np.vstack(
         [
             _pairs_of_columns(len(layers), beside),
-            _pairs_of_layers(layers, joined, len(columns)),
+            _pairs_of_layers(cspace, layers, joined, len(columns)),
         ]
     )
     line_of, bounds = _nodes(intervals)
-    poses = np.empty((len(line_of), 7))
+    poses = np.empty((len(line_of), 3 + layers.shape[1]))
     poses[:, :3] = columns[line_of % len(columns)]
     poses[:, axis] = bounds.mean(axis=1)
     poses[:, 3:] = layers[line_of // len(columns)]
-    configurations = configurations_from_poses(cspace.robot, poses)
+    configurations = cspace.configurations(poses)
     return RoadmapGraph(
         configurations.reshape(len(poses), cspace.robot.configuration_size),
         _proved(cspace, poses, _overlapping(lines, line_of, bounds)),
@@ -80,10 +87,10 @@ def eager_roadmap(
 def _intervals(cspace: CSpace, layers: Array, columns: Array, axis: int) -> list[Array]:
     """Free intervals (k, 2) of every line; layer after layer, in the columns' order."""
     n = cspace.dimension
-    rows = np.zeros((len(layers), 7))
+    rows = np.zeros((len(layers), 3 + layers.shape[1]))
     rows[:, 3:] = layers
     found = []
-    for configuration in configurations_from_poses(cspace.robot, rows):
+    for configuration in cspace.configurations(rows):
         layer = cspace.layer(configuration)
         found += [layer.free_intervals(column[:n], axis) for column in columns]
     return found
@@ -104,11 +111,13 @@ def _pairs_of_columns(layers: int, neighbours: Indices) -> Indices:
     return np.asarray(pairs + first, dtype=np.int64).reshape(-1, 2)
 
 
-def _pairs_of_layers(layers: Array, joined: int, columns: int) -> Indices:
+def _pairs_of_layers(cspace: CSpace, layers: Array, joined: int, columns: int) -> Indices:
     """The same line (k, 2) in neighbouring layers."""
-    table = nearest(layers, layers, joined + 1)
-    own = np.arange(len(layers))[:, None]
-    layer, place = np.nonzero((table >= 0) & (table != own))
+    table = np.full((len(layers), joined), -1, dtype=np.int64)
+    joints, weight = layer_metric(cspace), turn_length(cspace.robot)
+    for k in range(len(layers)):
+        find_nearest(layers, joints, table, k, len(layers), joined, weight)
+    layer, place = np.nonzero(table >= 0)
     pairs = np.unique(np.sort(np.column_stack([layer, table[layer, place]]), axis=1), axis=0)
     lines = pairs[:, None, :] * columns + np.arange(columns)[None, :, None]
     return np.asarray(lines, dtype=np.int64).reshape(-1, 2)
@@ -133,5 +142,5 @@ def _overlapping(lines: Indices, line_of: Indices, bounds: Array) -> Indices:
 def _proved(cspace: CSpace, poses: Array, pairs: Indices) -> Indices:
     """Those of the ``pairs`` (k, 2) of poses that a proved motion joins."""
     counts = np.empty(len(pairs), dtype=np.int64)
-    motions_are_free(cspace.scene, poses[pairs[:, 0]], poses[pairs[:, 1]], counts)
+    ways_are_free(cspace.model, poses[pairs[:, 0]], poses[pairs[:, 1]], counts)
     return pairs[counts > 0]

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.containers import EMPTY
 from ellipsoid_planning.roadmap.level import Level
-from ellipsoid_planning.robots.rigid import RigidRobot
 
 if TYPE_CHECKING:
     from ellipsoid_planning.roadmap.highway import HighwayRoadmap
@@ -52,7 +51,7 @@ def _crossings(level: Level) -> tuple[Indices, Array]:
     return nodes[proved], rows[proved, 1:]
 
 
-def _level_graph(level: Level, robot: RigidRobot) -> RoadmapGraph:
+def _level_graph(level: Level, cspace: CSpace) -> RoadmapGraph:
     """Vertices where edges leave and enter intervals; a node's own are joined along it."""
     nodes, swept = _crossings(level)
     places = np.column_stack([nodes.ravel(), swept.ravel()])
@@ -61,13 +60,13 @@ def _level_graph(level: Level, robot: RigidRobot) -> RoadmapGraph:
     same = np.flatnonzero(unique[:-1, 0] == unique[1:, 0]) if len(unique) else np.empty(0, int)
     along = np.column_stack([same, same + 1])
     integers = level.tables.node_integers[unique[:, 0].astype(np.int64)]
-    poses = np.empty((len(unique), 7))
+    poses = np.empty((len(unique), len(level.tables.pose)))
     poses[:, :3] = level.tables.columns[integers[:, roadmap_tables.NODE_COLUMN]]
     poses[:, level.axis] = unique[:, 1]
     layers = integers[:, roadmap_tables.NODE_LAYER]
     poses[:, 3:] = level.tables.orientations[layers]
     return RoadmapGraph(
-        configurations_from_poses(robot, poses).reshape(len(poses), robot.configuration_size),
+        cspace.configurations(poses).reshape(len(poses), cspace.robot.configuration_size),
         np.vstack([across, along]).astype(np.int64),
         layers.astype(np.int64),
     )
@@ -76,7 +75,7 @@ def _level_graph(level: Level, robot: RigidRobot) -> RoadmapGraph:
 def explored_graph(planner: HighwayRoadmap) -> RoadmapGraph:
     """Everything that the planner's queries have proved so far, over all levels."""
     robot = planner.cspace.robot
-    parts = [_level_graph(level, robot) for level in planner.levels]
+    parts = [_level_graph(level, planner.cspace) for level in planner.levels]
     configurations = [np.empty((0, robot.configuration_size))]
     edges, layers = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)]
     count, first_layer = 0, 0

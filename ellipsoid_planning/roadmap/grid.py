@@ -90,7 +90,8 @@ class Grid:
     Attributes:
         columns: (≥ C, 3), the swept coordinate 0.
         column_neighbours: (≥ C, D), filled up with −1.
-        orientations: quaternions of the layers (≥ L, 4).
+        orientations: quaternions of the layers, then values of joints (≥ L, 4 + V).
+        joints: what joints count in distances (J, METRIC).
         layer_neighbours: (≥ L, K), filled up with −1; the rows of the grid's own layers are
             looked for when the search first needs them (kernels.grid.find_nearest).
         passing_columns, passing_layers: (≥ C,) and (≥ L,), those that only lead out of passages:
@@ -101,9 +102,21 @@ class Grid:
     """
 
     def __init__(
-        self, columns: Array, column_neighbours: Indices, orientations: Array, neighbours: int
+        self,
+        columns: Array,
+        column_neighbours: Indices,
+        orientations: Array,
+        neighbours: int,
+        joints: Array,
+        weight: float,
     ) -> None:
-        """Join each layer to its ``neighbours`` nearest ones; of the columns that is given."""
+        """Join each layer to its ``neighbours`` nearest ones; of the columns that is given.
+
+        ``weight`` is that of the base's turn in the distance of layers, beside that of the
+        ``joints`` (J, METRIC); see kernels.roadmap_metric.
+        """
+        self.joints = joints
+        self._weight = weight
         self.column_count, self.layer_count = len(columns), len(orientations)
         self.columns = _with_spare_rows(columns, 0.0)
         self.column_neighbours = _with_spare_rows(_with_room(column_neighbours), -1)
@@ -141,7 +154,7 @@ class Grid:
         return int(found)
 
     def layer_of(self, orientation: Array, joins: bool = True) -> int:
-        """The layer of a quaternion (4,), added and joined to its nearest if it is new.
+        """The layer of a row (4 + V,), added and joined to its nearest if it is new.
 
         Unless it ``joins``, they are not joined to it.
         """
@@ -152,6 +165,7 @@ class Grid:
             self._distances = np.empty(max(len(self.columns), len(self.orientations)))
         found = find_layer(
             self.orientations,
+            self.joints,
             self.layer_neighbours,
             self.layer_count,
             self._distances,
@@ -159,6 +173,7 @@ class Grid:
             joins,
             orientation,
             self.joined,
+            self._weight,
         )
         self.layer_count = max(self.layer_count, found + 1)
         return int(found)

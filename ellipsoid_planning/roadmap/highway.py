@@ -8,15 +8,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.poses import configurations_from_poses
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.grid import between
-from ellipsoid_planning.kernels.motion import motions_are_free
+from ellipsoid_planning.kernels.robot_model import ways_are_free
 from ellipsoid_planning.kernels.shortcut import shortcut
 from ellipsoid_planning.metric import path_length, turn_length
 from ellipsoid_planning.outcome import EXHAUSTED, SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
+from ellipsoid_planning.roadmap.joint_layers import (
+    guided_layers,
+    home_configuration,
+    layer_metric,
+    spread_layers,
+)
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
 from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
@@ -26,6 +32,7 @@ from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
 from ellipsoid_planning.roadmap.shorten import shorten
 from ellipsoid_planning.roadmap.store import StoredRoadmap, save
 from ellipsoid_planning.roadmap.store_level import StoredLevel
+from ellipsoid_planning.robots.articulated import FIXED_BASE
 
 Array = NDArray[np.float64]
 
@@ -111,7 +118,7 @@ class HighwayRoadmap:
             if should_stop():
                 break
         if best is not None:
-            return Outcome(SOLVED, configurations_from_poses(self.cspace.robot, best))
+            return Outcome(SOLVED, self.cspace.configurations(best))
         return Outcome(TIMEOUT if should_stop() else EXHAUSTED)
 
     def prepare(self) -> None:
@@ -206,14 +213,20 @@ class HighwayRoadmap:
             self.levels.append(level)
         if not level.passages.begun:
             level.passages.begin(starts, goals)
-        if self.cspace.rotates:
-            quaternions = np.empty((_BETWEEN, 4))
-            for first in starts:
-                for last in goals:
-                    if between(first[3:], last[3:], quaternions):
-                        for quaternion in quaternions:
-                            level.grid.layer_of(quaternion)
+        for first in starts:
+            for last in goals:
+                for row in self._guides(first, last):
+                    level.grid.layer_of(row)
         return level
+
+    def _guides(self, first: Array, last: Array) -> Array:
+        """Layers that a query between two poses is likely to need, beside the grid's."""
+        if isinstance(self.cspace, ArticulatedCSpace):
+            return guided_layers(self.cspace, first, last, _BETWEEN)
+        quaternions = np.empty((_BETWEEN, 4))
+        if not (self.cspace.rotates and between(first[3:], last[3:], quaternions)):
+            return quaternions[:0]
+        return quaternions
 
     def _add_stored(self, stored: StoredLevel) -> Level:
         level = self._new_level(stored.refinement, stored.axis, stored.box, stored.orientations)
@@ -226,19 +239,30 @@ class HighwayRoadmap:
         """An empty level; its ``orientations`` (L, 4) are chosen here unless they are given."""
         dimension, given = self.cspace.dimension, self.parameters
         local = within(self.cspace, box)
-        lines = given.line_count(dimension)
+        lines, joints = given.line_count(dimension), layer_metric(self.cspace)
         if refinement > 0:
             lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(local.world, axis, lines)
-        if not self.cspace.rotates:
+        if isinstance(self.cspace, ArticulatedCSpace):
+            orientations = self._joint_layers(self.cspace, refinement)
+            if self.cspace.articulated.base == FIXED_BASE:
+                columns, neighbours = np.zeros((0, 3)), neighbours[:0]
+        elif not self.cspace.rotates:
             orientations = np.empty((0, 4))
         elif orientations is None:
             count = min(round(given.layer_count(dimension) * _MORE_LAYERS**refinement), MOST_LAYERS)
             orientations = spread_orientations(dimension, count)
             if refinement > 0:
                 orientations = random_turn(orientations, dimension, self._random)
-        grid = Grid(columns, neighbours, orientations, given.neighbour_count(dimension))
+        joined = given.neighbour_count(dimension, articulated=len(joints) > 0)
+        grid = Grid(columns, neighbours, orientations, joined, joints, self._weight)
         return Level(local, grid, axis, self._finder(local, box), refinement, box)
+
+    def _joint_layers(self, cspace: ArticulatedCSpace, refinement: int) -> Array:
+        """The layers of a level for an articulated robot; finer levels go on with other ones."""
+        count = self.parameters.layer_count(cspace.dimension, articulated=True)
+        counts = [min(round(count * _MORE_LAYERS**k), MOST_LAYERS) for k in range(refinement + 1)]
+        return spread_layers(cspace, counts[-1], sum(counts[:-1]))
 
     def _finder(self, cspace: CSpace, box: Box | None) -> PassageFinder:
         """The finder of passages in a box, which the box's levels share."""
@@ -254,7 +278,7 @@ class HighwayRoadmap:
         """The first motion (2, 7) from a start to a goal that is proved free, or None."""
         for start in starts:
             counts = np.empty(len(goals), dtype=np.int64)
-            motions_are_free(self.cspace.scene, np.tile(start, (len(goals), 1)), goals, counts)
+            ways_are_free(self.cspace.model, np.tile(start, (len(goals), 1)), goals, counts)
             reached = np.flatnonzero(counts > 0)
             if len(reached):
                 return np.vstack([start, goals[reached[0]]])
@@ -263,7 +287,7 @@ class HighwayRoadmap:
         return None
 
     def _solved(self, path: Array, on_path: Callable[[Array], None] | None) -> Outcome:
-        configurations = configurations_from_poses(self.cspace.robot, path)
+        configurations = self.cspace.configurations(path)
         if on_path is not None:
             on_path(configurations)
         return Outcome(SOLVED, configurations)
@@ -272,7 +296,7 @@ class HighwayRoadmap:
         """Whether a path (m, 7) may be given out: proved as configurations, if a file led to it."""
         if not self.loaded:
             return True
-        rows = configurations_from_poses(self.cspace.robot, path)
+        rows = self.cspace.configurations(path)
         return bool(self.cspace.are_motions_valid(rows[:-1], rows[1:]).all())
 
     def _improve(
@@ -301,7 +325,7 @@ class HighwayRoadmap:
 
     def _shortened(self, path: Array) -> Array:
         kept = np.zeros(len(path), dtype=np.bool_)
-        shortcut(self.cspace.scene, path, kept)
+        shortcut(self.cspace.model, path, kept)
         return path[kept]
 
     def _better(
@@ -314,8 +338,7 @@ class HighwayRoadmap:
         return path
 
     def _length(self, path: Array) -> float:
-        robot = self.cspace.robot
-        return path_length(robot, configurations_from_poses(robot, path))
+        return path_length(self.cspace.robot, self.cspace.configurations(path))
 
     def compile_kernels(self) -> None:
         """Compile everything that a query can call, so that the next one's time is its own.
@@ -332,9 +355,12 @@ class HighwayRoadmap:
         ends[:, : robot.dimension] = [world.low, world.high]
         if robot.rotates and robot.dimension == 3:
             ends[:, -1] = 1.0
+        if isinstance(self.cspace, ArticulatedCSpace):
+            ends = np.repeat(home_configuration(self.cspace.articulated)[None], 2, axis=0)
         poses = self.cspace.poses(ends)
         self._level(0, 0, None, poses[:1], poses[1:]).compile_kernels(poses)
-        within(self.cspace, (world.low, world.low + 1e-3 * (world.high - world.low)))
+        if not isinstance(self.cspace, ArticulatedCSpace):
+            within(self.cspace, (world.low, world.low + 1e-3 * (world.high - world.low)))
         self.cspace.is_valid(ends[0])
         self._direct_motion(poses[:1], poses[:1], lambda: True)
         if self.parameters.anytime:

@@ -58,7 +58,7 @@ class Level:
         self.axis = axis
         self.refinement, self.box = refinement, box
         self.tables = new_tables(grid, len(cspace.robot.parts))
-        self._scene = cspace.scene
+        self._model = cspace.model
         self.passages = passages
         self._taken_in = 0
         self._burst = _FIRST_TURN
@@ -72,7 +72,7 @@ class Level:
         should_stop: Callable[[], bool],
         thorough: bool = True,
     ) -> tuple[int, Array]:
-        """Search from ``starts`` (S, 7) to ``goals`` (G, 7): (status, poses (m, 7)).
+        """Search from ``starts`` (S, 7 + V) to ``goals`` (G, 7 + V): (status, poses (m, 7 + V)).
 
         When the grid is exhausted, passages are looked for once more, to the end if ``thorough``.
         The status is kernels.roadmap's SOLVED, EXHAUSTED or, when told to stop, SEARCHING; there
@@ -82,7 +82,7 @@ class Level:
         self._take_in()
         self.tables = grown(with_grid(self.tables, self.grid), len(starts))
         status = roadmap.begin(
-            self._scene, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
+            self._model, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
         )
         turn, exhausted = _FIRST_TURN, 0
         while True:
@@ -101,7 +101,7 @@ class Level:
                     break
             turn = min(2 * turn, _LONGEST_TURN)
         if status != roadmap_tables.SOLVED:
-            return status, np.empty((0, 7))
+            return status, starts[:0]
         return self._path(goal_rows)
 
     def _search(
@@ -118,7 +118,7 @@ class Level:
         while counters[roadmap_tables.STEPS] < end:
             began = time.perf_counter()
             status = roadmap.search(
-                self._scene,
+                self._model,
                 self.tables,
                 goal_rows,
                 self.axis,
@@ -161,19 +161,23 @@ class Level:
 
     def _path(self, goals: Array) -> tuple[int, Array]:
         last, goal = divmod(int(self.tables.counters[roadmap_tables.GOAL_REACHED]), len(goals))
-        path = np.empty((roadmap_path.path_room(self.tables, last), 7))
-        count = roadmap_path.trace(self._scene, self.tables, last, goal, goals, self.axis, path)
+        path = self._room(last)
+        count = roadmap_path.trace(self._model, self.tables, last, goal, goals, self.axis, path)
         return (roadmap_tables.SOLVED if count else roadmap_tables.EXHAUSTED), path[:count]
+
+    def _room(self, last: int) -> Array:
+        width = len(self.tables.pose)
+        return np.empty((roadmap_path.path_room(self.tables, last), width))
 
     def compile_kernels(self, ends: Array) -> None:
         """Call every kernel of a query once, on two poses ``ends`` (2, 7), without searching."""
         rows = self._rows(ends)
         self.tables = grown(with_grid(self.tables, self.grid))
-        roadmap.begin(self._scene, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
-        roadmap.search(self._scene, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
+        roadmap.begin(self._model, self.tables, rows[:1], rows[1:], self.axis, 1.0, 1.0)
+        roadmap.search(self._model, self.tables, rows[1:], self.axis, 1.0, 1.0, 0)
         warm_up_growth()
-        path = np.empty((roadmap_path.path_room(self.tables, -1) + 1, 7))
-        roadmap_path.trace(self._scene, self.tables, -1, 0, rows[1:], self.axis, path)
+        path = np.repeat(self._room(-1), 2, axis=0)
+        roadmap_path.trace(self._model, self.tables, -1, 0, rows[1:], self.axis, path)
 
     @property
     def statistics(self) -> dict[str, int]:

@@ -72,16 +72,20 @@ class RoadmapParameters:
             reach = f"from {least} to {most}" if isinstance(most, int) else f"of at least {least}"
             raise PlannerError(f"{name}: expected {noun} {reach}, got {value!r}")
 
-    def layer_count(self, dimension: int) -> int:
-        """Orientations of the first level in a world of ``dimension``."""
+    def layer_count(self, dimension: int, articulated: bool = False) -> int:
+        """Layers of the first level in a world of ``dimension``."""
+        if articulated:
+            return self.layers or 300
         return self.layers or (36 if dimension == 2 else 60)
 
     def line_count(self, dimension: int) -> int:
         """Sweep lines of the first level along the longest side."""
         return self.lines or (24 if dimension == 2 else 10)
 
-    def neighbour_count(self, dimension: int) -> int:
+    def neighbour_count(self, dimension: int, articulated: bool = False) -> int:
         """Layers that each layer is joined to."""
+        if articulated:
+            return self.neighbours or 12
         return self.neighbours or (4 if dimension == 2 else 12)
 
     def checked_axis(self, dimension: int) -> int:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import centring, motion, passages
 from ellipsoid_planning.roadmap.seeds import Seed, seeds_of_query
@@ -91,6 +92,8 @@ class PassageFinder:
         self._begun = True
         self._credit, self._tried_before = _FIRST_PAIRS, self.seeds_tried
         self._kernel[0].keys[:] = -1
+        if isinstance(self.cspace, ArticulatedCSpace):
+            return
         self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
 
     def advance(self, steps: int, should_stop: Callable[[], bool]) -> bool:

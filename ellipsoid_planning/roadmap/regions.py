@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.local import LocalCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import layout
@@ -37,6 +38,8 @@ def query_boxes(cspace: CSpace, ends: Array) -> list[Box | None]:
     the robot's reach and corners stand on a lattice, so that queries from about here to about
     there share boxes, and their roadmaps.
     """
+    if isinstance(cspace, ArticulatedCSpace):
+        return [None]
     n = cspace.dimension
     low, high = ends[:, :n].min(axis=0), ends[:, :n].max(axis=0)
     reach = float(layout.part_rows(cspace.scene)[:, layout.PART_REACH].max())

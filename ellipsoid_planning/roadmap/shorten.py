@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.poses import configurations_from_poses, interpolate
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.metric import path_length
 
@@ -24,8 +23,7 @@ def shorten(
     Tries 200 shortcuts between points drawn along the path; each is taken if it is shorter and
     all of its motions are proved.
     """
-    robot = cspace.robot
-    current = configurations_from_poses(robot, path)
+    current = cspace.configurations(path)
     for _ in range(_ATTEMPTS):
         if should_stop():
             break
@@ -57,4 +55,4 @@ def _point_at(cspace: CSpace, path: Array, ends: Array, length: float) -> tuple[
     k = min(int(np.searchsorted(ends, length, side="right")) - 1, len(path) - 2)
     span = ends[k + 1] - ends[k]
     s = (length - ends[k]) / span if span > 0.0 else 0.0
-    return k, interpolate(cspace.robot, path[k], path[k + 1], s)
+    return k, cspace.interpolate(path[k], path[k + 1], s)

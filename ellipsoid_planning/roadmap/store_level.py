@@ -179,7 +179,7 @@ class StoredLevel:
         for layer in np.flatnonzero(ready):
             q = tables.orientations[layer]
             placement.place(scene, 0.0, 0.0, 0.0, *q, tables.placed[layer])
-            tables.ready[layer] = True
+            tables.ready[layer] = tables.usable[layer] = True
         tables.counters[roadmap_tables.LAYERS_PLACED] = np.count_nonzero(ready)
 
     def _box(self, dimension: int) -> tuple[Array, Array] | None:

@@ -24,7 +24,7 @@ def _map(size: int) -> NDArray[np.int64]:
 
 def new_tables(grid: Grid, parts: int) -> Roadmap:
     """Empty tables for the columns and layers of ``grid`` and a robot of ``parts`` parts."""
-    workspace, placed, stack = motion.motion_workspaces()
+    width = 3 + grid.orientations.shape[1]
     counters = np.zeros(roadmap_tables.COUNTERS, dtype=np.int64)
     counters[[roadmap_tables.OWN_LAYERS, roadmap_tables.JOINED]] = grid.own_layers, grid.joined
     return Roadmap(
@@ -50,11 +50,12 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         entry_integers=np.empty((4 * _ROWS, 3), dtype=np.int64),
         end_reals=np.empty((_ENDS, roadmap_tables.END_REALS)),
         end_integers=np.zeros((_ENDS, roadmap_tables.END_INTEGERS), dtype=np.int64),
-        passage_poses=np.empty((_ROWS, 7)),
+        passage_poses=np.empty((_ROWS, width)),
         counters=counters,
-        motion=workspace,
-        motion_placed=placed,
-        motion_stack=stack,
+        motion=motion.motion_workspaces(),
+        joints=grid.joints,
+        usable=np.zeros(len(grid.orientations), dtype=np.bool_),
+        pose=np.empty(width),
     )
 
 
@@ -109,7 +110,7 @@ def grown(tables: Roadmap, starts: int = 0) -> Roadmap:
 def with_passage(
     tables: Roadmap, rows: NDArray[np.float64], length: float, poses: NDArray[np.float64]
 ) -> Roadmap:
-    """``tables`` with one more passage along ``poses`` (m, 7).
+    """``tables`` with one more passage along ``poses`` (m, 7 + V).
 
     ``rows`` (2, 5) tell layer, x, y, z and column of its first and its last pose.
     """
@@ -151,7 +152,6 @@ def with_grid(tables: Roadmap, grid: Grid) -> Roadmap:
         passing_layers=grid.passing_layers,
         passing_columns=grid.passing_columns,
         placed=np.concatenate([tables.placed, more]) if new else tables.placed,
-        ready=np.concatenate([tables.ready, np.zeros(new, dtype=np.bool_)])
-        if new
-        else tables.ready,
+        ready=np.pad(tables.ready, (0, new)),
+        usable=np.pad(tables.usable, (0, new)),
     )

@@ -18,7 +18,7 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_yaw,
 )
 from ellipsoid_planning.robots.joint import BALL, FIXED, PRISMATIC, Joint
-from ellipsoid_planning.robots.reach import joint_weights
+from ellipsoid_planning.robots.reach import joint_weights, robot_reach
 from ellipsoid_planning.robots.tree import check_tree, joints_in_order
 
 Array = NDArray[np.float64]
@@ -182,6 +182,11 @@ class ArticulatedRobot:
         weights = joint_weights(self)
         weights.setflags(write=False)
         return weights
+
+    @cached_property
+    def reach(self) -> float:
+        """How far points of the robot can get from its base, at most."""
+        return robot_reach(self)
 
     def pose(self, configuration: ArrayLike) -> tuple[Array, Array]:
         """Return the base position (n,) and rotation (n, n), base to world, of a configuration.

@@ -18,13 +18,13 @@ def scene_page(scenario: Scenario, result: PlanResult | None) -> str:
     """The HTML text of a page with the scenario, and the result's path if there is one.
 
     With a result, the roadmap is what HighwayRoadmap explores between start and goal, whoever
-    planned; without one, the start's layer of the whole roadmap, less its redundant nodes. There
-    is none where the robot's base is fixed.
+    planned; without one, the start's layer of the whole roadmap, less its redundant nodes.
+    Robots with joints are shown without one.
     """
     from planners.view.meshcat_page import scene_html
 
     roadmap = None
-    if scenario.robot.base_size:
+    if not scenario.robot.joints:
         roadmap = _start_layer(scenario) if result is None else _explored_roadmap(scenario)
     return scene_html(scenario, result, roadmap)
 

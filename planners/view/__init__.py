@@ -1,5 +1,5 @@
 """What people look at: meshcat pages and matplotlib figures.
 
-`meshcat_page.scene_html` makes a page with a scene in it and `figures.figure` a picture. Both
-import their library only when they are called.
+`show.show` opens a page with a scenario in it, and a path if there is one; `meshcat_page` and
+`figures` have the pieces. All of them import their library only when they are called.
 """

@@ -141,7 +141,7 @@ def _caption(scenario: Scenario, result: PlanResult | None) -> list[str]:
     path = result.path
     proof = "certified" if path.certified else "not certified"
     summary = f"{result.planner}: path of length {path.length:.4g}, {proof}"
-    if math.isfinite(path.min_clearance):
+    if 0.0 < path.min_clearance < math.inf:
         summary += f", clearance at least {path.min_clearance:.3g}"
     return [*lines, summary]
 

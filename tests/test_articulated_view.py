@@ -207,7 +207,7 @@ def test_a_marker_reaches_out_of_the_links_it_joins():
     axis, radius = np.array([0, 1, 0]), 0.4
     pin = Joint.of("pin", "fat", "long", "revolute", [0.5, 0, 0], None, axis, -1, 1)
     (marker,) = joint_markers(ArticulatedRobot(links, (pin,)))
-    ends = [0.5, 0, 0] + np.outer([-1.5 - radius, 1.5 + radius], axis)
+    ends = np.array([0.5, 0, 0]) + np.outer([-1.5 - radius, 1.5 + radius], axis)
     np.testing.assert_allclose(marker.points, ends)
     ball = Joint.of("ball", "fat", "long", "ball", [0.5, 0, 0])
     (marker,) = joint_markers(ArticulatedRobot(links, (ball,)))

@@ -15,6 +15,7 @@ from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link
 from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.world import World
 from planners.cli.outputs import columns
+from planners.cli.pages import scene_page
 from planners.view import colours
 from planners.view.figures import draw
 from planners.view.joint_markers import joint_markers
@@ -277,6 +278,11 @@ def test_columns_are_named_after_joints():
     names = columns(chain().scenario.robot)
     assert names[3:8] == ("qx", "qy", "qz", "qw", "ball 0_qx")
     assert len(names) == 15
+
+
+def test_pages_have_the_roadmap_of_a_base_that_moves():
+    assert 'data-folder="roadmap"' in scene_page(rabbit().scenario, None)
+    assert 'data-folder="roadmap"' not in scene_page(arm().scenario, arm())
 
 
 def test_show_writes_a_page(tmp_path):

@@ -19,12 +19,12 @@ def scene_page(scenario: Scenario, result: PlanResult | None) -> str:
 
     With a result, the roadmap is what HighwayRoadmap explores between start and goal, whoever
     planned; without one, the start's layer of the whole roadmap, less its redundant nodes.
-    Robots with joints are shown without one.
+    A robot on a fixed base, which does not translate, has no roadmap.
     """
     from planners.view.meshcat_page import scene_html
 
     roadmap = None
-    if not scenario.robot.joints:
+    if scenario.robot.base_size:
         roadmap = _start_layer(scenario) if result is None else _explored_roadmap(scenario)
     return scene_html(scenario, result, roadmap)
 

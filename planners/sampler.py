@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from ompl import base as ob
 
+from ellipsoid_planning.cspace.articulated_sampling import ArticulatedSampling
 from ellipsoid_planning.cspace.sampling import FreeIntervalSampling
 
 from .bindings import clear_sampler, draw_seed, install_sampler
-from .spaces import check_space, state_access
+from .spaces import check_space, is_articulated, state_access
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 class FreeIntervalSampler(ob.ValidStateSampler):
     """Draws an orientation and a line, computes the line's free intervals, and draws in them.
 
-    Every state it yields is valid by construction; no state is ever checked. With ``uniform`` the
+    Every state it yields is valid by construction; no state is ever checked, except that joints are
+    drawn until an articulated robot keeps clear of itself, and that one on a fixed base, which has
+    no lines to draw from, is drawn until it is valid. With ``uniform`` the
     states are exactly uniform on free space; without, places that are narrow along a line are
     favoured, which suits roadmap planners. OMPL's PRM, PRMstar and BKPIECE1 use it once installed;
     the other bound planners draw from the whole space, whatever is installed.
@@ -51,7 +54,8 @@ class FreeIntervalSampler(ob.ValidStateSampler):
         self._write = access.write
         self._read = access.read
         self._out = np.empty(access.size)
-        self._drawing = FreeIntervalSampling(cspace, draw_seed() if seed is None else seed, uniform)
+        drawing = ArticulatedSampling if is_articulated(cspace) else FreeIntervalSampling
+        self._drawing = drawing(cspace, draw_seed() if seed is None else seed, uniform)
 
     def sample(self, state: ob.State) -> bool:
         """Set ``state`` to a free one; False when several lines in a row are blocked."""

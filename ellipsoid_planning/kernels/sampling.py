@@ -38,7 +38,7 @@ def random_rotation(a, b, c):
 
 
 @kernel
-def _random_turn(a, b, c, arc):
+def random_turn(a, b, c, arc):
     """A rotation about a random axis with a quaternion arc of at most ``arc``."""
     height = 2.0 * a - 1.0
     ring = math.sqrt(max(0.0, 1.0 - height * height))
@@ -49,7 +49,7 @@ def _random_turn(a, b, c, arc):
 
 
 @kernel
-def _clip(intervals, count, low, high):
+def clip(intervals, count, low, high):
     """Cut the intervals to [low, high]: (count, total length)."""
     kept, total = 0, 0.0
     for k in range(count):
@@ -62,7 +62,7 @@ def _clip(intervals, count, low, high):
 
 
 @kernel
-def _place_in(intervals, count, amount):
+def place_in(intervals, count, amount):
     """The point at arc length ``amount`` along the intervals."""
     for k in range(count):
         length = intervals[k, 1] - intervals[k, 0]
@@ -104,7 +104,7 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
             elif kind == SPATIAL:
                 arc = distance * row[8]
                 room = distance - arc
-                turn = _random_turn(row[0], row[1], row[2], arc)
+                turn = random_turn(row[0], row[1], row[2], arc)
                 q = product(*turn, *q)
             else:
                 # SE(2) weighs a heading's change by 1/2.
@@ -129,10 +129,10 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
         low, high = scene[LOW + axis], scene[HIGH + axis]
         if distance >= 0.0:
             low, high = max(low, near[axis] - width), min(high, near[axis] + width)
-        count, total = _clip(intervals, count, low, high)
+        count, total = clip(intervals, count, low, high)
         if count == 0 or (uniform and row[7] * (high - low) >= total):
             continue
-        point[axis] = _place_in(intervals, count, row[3 + axis] * total)
+        point[axis] = place_in(intervals, count, row[3 + axis] * total)
         out[0], out[1], out[2] = point[0], point[1], point[2]
         out[3], out[4], out[5], out[6] = q
         return True

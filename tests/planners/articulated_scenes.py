@@ -126,12 +126,14 @@ def scenario_of(kind: str, clearance: float = 0.0, blocked: bool = False) -> Sce
     return Scenario(kind, world_of(robot, blocked), robot, start, goal, clearance)
 
 
-def random_configurations(robot: ArticulatedRobot, count: int, seed: int) -> Array:
-    """Configurations (count, d) all over the bounds of `world_of` and the joints' limits."""
+def random_configurations(
+    robot: ArticulatedRobot, count: int, seed: int, reach: float = 6.5
+) -> Array:
+    """Configurations (count, d) with base positions up to ``reach``, and joints in their limits."""
     random = np.random.default_rng(seed)
     rows = np.tile(home(robot), (count, 1))
     if robot.base != "fixed":
-        rows[:, : robot.dimension] = random.uniform(-6.5, 6.5, (count, robot.dimension))
+        rows[:, : robot.dimension] = random.uniform(-reach, reach, (count, robot.dimension))
     quaternions = []
     if robot.base == "free" and robot.dimension == 2:
         rows[:, 2] = random.uniform(-math.pi, math.pi, count)

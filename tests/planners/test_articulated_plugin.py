@@ -5,11 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy import stats
 
+from ellipsoid_planning.cspace.articulated_sampling import ArticulatedSampling
 from planners.motion import CertifiedMotionValidator
+from planners.sampler import FreeIntervalSampler
 from planners.spaces import read_configuration, write_configuration
 from planners.validity import EllipsoidValidityChecker
-from tests.planners.articulated_scenes import ROBOTS, scenario_of
+from tests.planners.articulated_scenes import ROBOTS, random_configurations, scenario_of
 from tests.planners.planner_scenes import random_states, space_information
 
 
@@ -74,3 +77,42 @@ def test_checks_from_several_threads_do_not_mix():
     with ThreadPoolExecutor(4) as threads:
         found = threads.map(lambda _: [checker.isValid(state) for state in states], range(8))
         assert all(each == wanted for each in found)
+
+
+@pytest.mark.parametrize("uniform", [True, False])
+@pytest.mark.parametrize("kind", ROBOTS)
+def test_sampled_states_are_valid_and_near_when_asked(kind, uniform):
+    scenario = scenario_of(kind, clearance=0.05)
+    cspace = scenario.cspace()
+    si = space_information(cspace)
+    sampler = FreeIntervalSampler(si, cspace, uniform, seed=3)
+    checker = EllipsoidValidityChecker(si, cspace)
+    start, state = si.allocState(), si.allocState()
+    write_configuration(start, scenario.start, cspace)
+    drawn = 0
+    for _ in range(50):
+        if sampler.sample(state):
+            drawn += 1
+            assert checker.isValid(state)
+        for distance in (0.01, 1.0, 30.0):
+            if sampler.sampleNear(state, start, distance):
+                drawn += 1
+                assert checker.isValid(state)
+                travelled = si.distance(start, state)
+                assert travelled <= distance * (1.0 + 1e-9)
+    assert drawn > 150
+
+
+@pytest.mark.statistical
+@pytest.mark.parametrize("kind", ["snake", "mixed spatial", "arm"])
+def test_uniform_samples_have_the_distribution_of_rejection(kind):
+    cspace = scenario_of(kind).cspace()
+    sampling = ArticulatedSampling(cspace, seed=4, uniform=True)
+    drawn, row = [], np.empty(cspace.robot.configuration_size)
+    while len(drawn) < 3000:
+        if sampling.sample(row):
+            drawn.append(row.copy())
+    tried = random_configurations(cspace.robot, 8000, seed=5, reach=7.0)
+    kept = tried[cspace.are_valid(tried)]
+    for k in range(row.size):
+        assert stats.ks_2samp(np.array(drawn)[:, k], kept[:, k]).pvalue > 1e-4

@@ -54,8 +54,12 @@ class FreeIntervalSampler(ob.ValidStateSampler):
         self._write = access.write
         self._read = access.read
         self._out = np.empty(access.size)
-        drawing = ArticulatedSampling if is_articulated(cspace) else FreeIntervalSampling
-        self._drawing = drawing(cspace, draw_seed() if seed is None else seed, uniform)
+        seed = draw_seed() if seed is None else seed
+        self._drawing: ArticulatedSampling | FreeIntervalSampling
+        if is_articulated(cspace):
+            self._drawing = ArticulatedSampling(cspace, seed, uniform)
+        else:
+            self._drawing = FreeIntervalSampling(cspace, seed, uniform)
 
     def sample(self, state: ob.State) -> bool:
         """Set ``state`` to a free one; False when several lines in a row are blocked."""

@@ -31,6 +31,7 @@ DOTS_PER_INCH = 130
 WIDTH = 11.0  # of a figure [inches]
 DISTANCE_HEIGHT = 2.1
 JOINTS_HEIGHT = 5.5
+TITLE_LINE = 0.25  # one more over a layer, for the joints
 
 
 def figure(source: Scenario | PlanResult, output: str | Path) -> Path:
@@ -128,7 +129,8 @@ def _panel_height(view: LayerSlice | JointSlice) -> float:
     if isinstance(view, JointSlice):
         return JOINTS_HEIGHT
     across, up = np.ptp(view.bounds, axis=0)
-    return float(np.clip(0.44 * WIDTH * up / across + 1.6, 3.8, 6.6))
+    title = TITLE_LINE if view.cspace.robot.joints else 0.0
+    return float(np.clip(0.44 * WIDTH * up / across + 1.6, 3.8, 6.6)) + title
 
 
 def _check_format(output: Path) -> None:

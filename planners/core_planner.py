@@ -16,7 +16,7 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.outcome import SOLVED, Outcome
 
 from . import bindings
-from .spaces import state_access
+from .spaces import is_articulated, state_access
 from .validity import EllipsoidValidityChecker
 
 Statuses = ob.PlannerStatus.PlannerStatusType
@@ -54,6 +54,8 @@ class CorePlanner(ob.Planner):
     """Names and types of the parameters."""
     PARAMETER_CLASS: ClassVar[type]
     """The dataclass that checks them."""
+    RIGID_ONLY: ClassVar[bool] = True
+    """Whether the core plans for rigid robots only."""
 
     # What `kernels_in_use` told whenever this process has loaded kernels.
     _warm: ClassVar[set[tuple[Any, ...]]] = set()
@@ -124,7 +126,12 @@ class CorePlanner(ob.Planner):
         return self.PARAMETER_CLASS(**{name: getattr(self, name) for name in self.PARAMETERS})
 
     def _cspace(self) -> CSpace:
-        return cspace_of(self.getSpaceInformation(), self.getName())
+        cspace = cspace_of(self.getSpaceInformation(), self.getName())
+        if self.RIGID_ONLY and is_articulated(cspace):
+            raise PlannerError(
+                f"{self.getName()} plans for rigid robots only, not for articulated ones"
+            )
+        return cspace
 
     def setup(self) -> None:
         """Check the parameters.

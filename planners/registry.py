@@ -39,12 +39,30 @@ class BoundPlanner:
             a callback aborts the process; Python checkers, motion validators and samplers with
             C++ objectives and conditions are fine.
         needs_plugin: it works with our own checker only.
+        informed: it draws from where better paths can run, which OMPL knows of rigid robots'
+            spaces only.
+        informed_by: parameters that make it do so.
     """
 
     name: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     second_thread: bool = False
     needs_plugin: bool = False
+    informed: bool = False
+    informed_by: tuple[str, ...] = ()
+
+    def check_articulated(self, values: Mapping[str, Any]) -> None:
+        """Check that the planner works for articulated robots with these parameters.
+
+        Raises:
+            PlannerError: it does not.
+        """
+        why = "OMPL draws informed samples in the spaces of rigid robots only"
+        if self.informed:
+            raise PlannerError(f"{self.name} does not plan for articulated robots: {why}")
+        for name in self.informed_by:
+            if values.get(name):
+                raise PlannerError(f"{self.name}.{name}: not for articulated robots: {why}")
 
     def parameter_kinds(self) -> dict[str, Any]:
         """The type of every parameter."""
@@ -77,7 +95,8 @@ class OwnPlanner:
     """A planner of ours, a subclass of `ob.Planner` with these members.
 
     ``PARAMETERS`` maps the names of its parameters, which are plain attributes, to their types;
-    without it there are none. Optional are also the method ``check_parameters()``, which raises
+    without it there are none. ``RIGID_ONLY``, if it is there and true, says that it plans for rigid
+    robots only. Optional are also the method ``check_parameters()``, which raises
     PlannerError, the method ``warm_up()``, which compiles what a solve needs, the mapping
     ``statistics``, whose entries ``build_time`` and ``search_time`` go to a result's times,
     ``error``, the traceback of an exception that ended the last solve with CRASH, and the methods
@@ -96,6 +115,15 @@ class OwnPlanner:
     def load(self) -> Any:
         """The class itself."""
         return getattr(importlib.import_module(self.module), self.name)
+
+    def check_articulated(self, values: Mapping[str, Any]) -> None:  # noqa: ARG002
+        """Check that the planner works for articulated robots.
+
+        Raises:
+            PlannerError: it does not.
+        """
+        if getattr(self.load(), "RIGID_ONLY", False):
+            raise PlannerError(f"{self.name} plans for rigid robots only, not for articulated ones")
 
     def parameter_kinds(self) -> dict[str, Any]:
         """The type (or tuple of types) of every parameter."""
@@ -156,6 +184,7 @@ _RRT_STAR = {
         focus_search="setFocusSearch",
     ),
 }
+_INFORMED = ("informed_sampling", "ordered_sampling", "focus_search")
 _BIT_STAR = {
     **_table(
         float,
@@ -190,20 +219,20 @@ _FMT = {
 _ENTRIES: tuple[PlannerEntry, ...] = (
     OwnPlanner("HighwayRoadmap", "planners.highway"),
     OwnPlanner("FreeIntervalRRTConnect", "planners.free_interval_rrt_connect"),
-    BoundPlanner("AORRTC", _RANGE),
+    BoundPlanner("AORRTC", _RANGE, informed=True),
     BoundPlanner("BFMT", _FMT),
-    BoundPlanner("BITstar", _BIT_STAR),
+    BoundPlanner("BITstar", _BIT_STAR, informed=True),
     BoundPlanner("BKPIECE1", {**_RANGE, **_CELLS, **_CELL_FAILURE}),
     BoundPlanner("FMT", _FMT),
-    BoundPlanner("InformedRRTstar", _RRT_STAR),
+    BoundPlanner("InformedRRTstar", _RRT_STAR, informed=True),
     BoundPlanner("KPIECE1", {**_RANGE, **_BIAS, **_CELLS, **_CELL_FAILURE}),
     BoundPlanner("LBKPIECE1", {**_RANGE, **_CELLS}),
     BoundPlanner("PRM", _NEIGHBOURS, second_thread=True),
     BoundPlanner("PRMstar", second_thread=True),
     BoundPlanner("RRT", {**_RANGE, **_BIAS, **_INTERMEDIATE}),
     BoundPlanner("RRTConnect", {**_RANGE, **_INTERMEDIATE}),
-    BoundPlanner("RRTstar", _RRT_STAR),
-    BoundPlanner("SORRTstar", _RRT_STAR),
+    BoundPlanner("RRTstar", _RRT_STAR, informed_by=_INFORMED),
+    BoundPlanner("SORRTstar", _RRT_STAR, informed=True),
 )
 _BY_NAME = {entry.name: entry for entry in _ENTRIES}
 

@@ -15,6 +15,7 @@ from ompl import geometric as og
 
 from ellipsoid_planning.errors import PlannerError, RoadmapError
 from ellipsoid_planning.roadmap.store_format import check_target
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
 
 from . import bindings
 from .certify import is_certified
@@ -91,11 +92,14 @@ def checked_request(
     if roadmap is not None:
         check_roadmap_file(entry, Path(roadmap))
     values = {**(own if entry.name == own_name else {}), **(parameters or {})}
+    values = checked_parameters(entry, values)
+    if isinstance(scenario.robot, ArticulatedRobot):
+        entry.check_articulated(values)
     return Request(
         scenario=scenario,
         cspace=scenario.cspace(),
         entry=entry,
-        parameters=checked_parameters(entry, values),
+        parameters=values,
         checker=checker,
         resolution=resolution,
         time_limit=float(time_limit),

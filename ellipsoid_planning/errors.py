@@ -76,6 +76,10 @@ class FamilyError(EllipsoidPlanningError):
     """An unknown family of scenarios, or a clearance, dimension or seed that it does not have."""
 
 
+class UrdfError(EllipsoidPlanningError):
+    """A URDF, or a mesh of it, that cannot be read, or that robots of ellipsoids cannot follow."""
+
+
 class PlannerError(EllipsoidPlanningError):
     """An unknown planner, an unknown parameter, or a parameter out of its range."""
 

@@ -18,6 +18,7 @@ from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.joint import PRISMATIC, REVOLUTE, Joint
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.scenario_joints import written_values
+from ellipsoid_planning.scenario_origin import Origin
 
 if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
@@ -36,9 +37,9 @@ def scenario_document(scenario: Scenario) -> dict[str, Any]:
         "description": scenario.description,
         "dimension": scenario.dimension,
         "bounds": {"low": world.low.tolist(), "high": world.high.tolist()},
-        "arena": [_body(scenario, body) for body in world.arenas],
-        "obstacles": [_body(scenario, body) for body in world.obstacles],
-        "robot": _robot(scenario),
+        "arena": [_body(scenario.origin, body) for body in world.arenas],
+        "obstacles": [_body(scenario.origin, body) for body in world.obstacles],
+        "robot": robot_document(scenario.robot, scenario.origin),
         "clearance": scenario.clearance,
         "start": _pose(scenario, scenario.start),
         "goal": _pose(scenario, scenario.goal),
@@ -48,32 +49,35 @@ def scenario_document(scenario: Scenario) -> dict[str, Any]:
     return document
 
 
-def _body(scenario: Scenario, body: Ellipsoid) -> dict[str, Any]:
+def _body(origin: Origin, body: Ellipsoid) -> dict[str, Any]:
     return {
         "name": body.name,
         "semi_axes": body.semi_axes.tolist(),
         "position": body.centre.tolist(),
-        "orientation": _orientation(scenario, body, body.rotation),
+        "orientation": _orientation(origin, body, body.rotation),
     }
 
 
-def _robot(scenario: Scenario) -> dict[str, Any]:
-    robot = scenario.robot
+def robot_document(
+    robot: RigidRobot | ArticulatedRobot, origin: Origin | None = None
+) -> dict[str, Any]:
+    """Return the entry ``robot`` of a scenario's file; ``origin`` knows orientations as written."""
+    origin = origin or Origin()
     if isinstance(robot, RigidRobot):
-        parts = [_body(scenario, part) for part in robot.parts]
+        parts = [_body(origin, part) for part in robot.parts]
         return {"rotates": robot.rotates, "parts": parts}
     return {
         "base": robot.base,
         "links": [
-            {"name": link.name, "parts": [_body(scenario, part) for part in link.parts]}
+            {"name": link.name, "parts": [_body(origin, part) for part in link.parts]}
             for link in robot.links
         ],
-        "joints": [_joint(scenario, joint) for joint in robot.joints],
+        "joints": [_joint(origin, joint) for joint in robot.joints],
         "ignore_self_collision": sorted(sorted(pair) for pair in robot.ignored),
     }
 
 
-def _joint(scenario: Scenario, joint: Joint) -> dict[str, Any]:
+def _joint(origin: Origin, joint: Joint) -> dict[str, Any]:
     written: dict[str, Any] = {
         "name": joint.name,
         "type": joint.type,
@@ -81,7 +85,7 @@ def _joint(scenario: Scenario, joint: Joint) -> dict[str, Any]:
         "child": joint.child,
         "origin": {
             "position": joint.position.tolist(),
-            "orientation": _orientation(scenario, joint, joint.rotation),
+            "orientation": _orientation(origin, joint, joint.rotation),
         },
     }
     if joint.axis is not None:
@@ -108,16 +112,14 @@ def _pose(scenario: Scenario, configuration: NDArray[np.float64]) -> dict[str, A
 def _pose_orientation(scenario: Scenario, turn: NDArray[np.float64]) -> dict[str, Any]:
     fixed = scenario.robot.orientation
     if fixed is not None:
-        return _orientation(scenario, fixed, fixed)
+        return _orientation(scenario.origin, fixed, fixed)
     if scenario.dimension == 2:
         return form_of_heading(float(turn[0]))
     return {"quaternion": turn[:4].tolist()}
 
 
-def _orientation(
-    scenario: Scenario, owner: object, rotation: NDArray[np.float64]
-) -> dict[str, Any]:
-    for built, written in scenario.origin.orientations:
+def _orientation(origin: Origin, owner: object, rotation: NDArray[np.float64]) -> dict[str, Any]:
+    for built, written in origin.orientations:
         if built is owner:
             return copy.deepcopy(dict(written))
     return form_of_rotation(rotation)

@@ -20,7 +20,12 @@ def scenario_text(scenario: Scenario) -> str:
 
     Vectors and orientations stand on one line each, the description is folded.
     """
-    return "\n".join(_block(scenario.to_dict(), "")) + "\n"
+    return document_text(scenario.to_dict())
+
+
+def document_text(document: Mapping[str, Any]) -> str:
+    """Return a scenario's document, or entries of one, as the text of a YAML file."""
+    return "\n".join(_block(document, "")) + "\n"
 
 
 def _block(mapping: Mapping[str, Any], indent: str) -> Iterator[str]:

@@ -11,6 +11,7 @@ from planners.cli.benchmark import benchmark
 from planners.cli.command_group import CommandGroup
 from planners.cli.family import family
 from planners.cli.figure import figure
+from planners.cli.import_urdf import urdf
 from planners.cli.interrupt import end_on_interrupt
 from planners.cli.plan import plan
 from planners.cli.scenarios import scenarios
@@ -65,6 +66,17 @@ def _root(
 
 for command in (plan, show, figure, scenarios, family, verify, benchmark, schema):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
+
+imports = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
+imports.command(context_settings={"help_option_names": ["-h", "--help"]})(urdf)
+
+
+@imports.callback()
+def _imports() -> None:
+    """Bring robots in from other descriptions."""
+
+
+app.add_typer(imports, name="import")
 
 
 def main() -> None:

@@ -10,44 +10,12 @@ from numpy.typing import NDArray
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.scenario import Scenario
 from planners.verify import containment, separation
-from planners.verify.motion import placements
+from planners.verify.meetings import Clearances, Meeting
+from planners.verify.placement import part_placements
 
 Array = NDArray[np.float64]
 
 _LARGEST_BATCH = 20000
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """A part that certainly meets an obstacle or leaves an arena.
-
-    Attributes:
-        kind: "obstacle" or "arena".
-        part, body: names.
-        depth: about how deep.
-        row: of the configuration.
-    """
-
-    kind: str
-    part: str
-    body: str
-    depth: float
-    row: int
-
-
-@dataclass(frozen=True, eq=False)
-class Clearances:
-    """Of k configurations.
-
-    Attributes:
-        lower: (k,), bounds of the distance to obstacles and arena boundaries from below.
-        upper: (k,), from above; infinite where only `lower` was needed.
-        meetings: every contact that is certain.
-    """
-
-    lower: Array
-    upper: Array
-    meetings: tuple[Meeting, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +51,11 @@ class ClearanceTester:
         lower = np.full(len(configurations), np.inf)
         upper = np.full(len(configurations), np.inf)
         meetings: list[Meeting] = []
-        positions, rotations = placements(self._robot, configurations)
+        all_centres, all_matrices = part_placements(self._robot, configurations)
         if not np.all(np.isfinite(needed)) and self._obstacles.names:
-            needed = np.minimum(needed, self._at_most(positions, rotations))
+            needed = np.minimum(needed, self._at_most(all_centres))
         for part, name in enumerate(self._parts.names):
-            centres = positions + rotations @ self._parts.centres[part]
-            matrices = rotations @ self._parts.matrices[part]
+            centres, matrices = all_centres[:, part], all_matrices[:, part]
             for rows, low, high, found in (
                 self._obstacle_distances(part, centres, matrices, needed, lower),
                 self._arena_rooms(centres, matrices, needed, lower),
@@ -98,12 +65,11 @@ class ClearanceTester:
                 meetings += [Meeting(k, name, body, depth, row) for k, body, depth, row in found]
         return Clearances(lower, upper, tuple(meetings))
 
-    def _at_most(self, positions: Array, rotations: Array) -> Array:
+    def _at_most(self, all_centres: Array) -> Array:
         """Bounds (k,) of clearances from above: the distances of the bodies' centres."""
-        nearest = np.full(len(positions), np.inf)
-        for part in range(len(self._parts.names)):
-            centres = positions + rotations @ self._parts.centres[part]
-            for row, centre in enumerate(centres):
+        nearest = np.full(len(all_centres), np.inf)
+        for row, centres in enumerate(all_centres):
+            for centre in centres:
                 away = np.linalg.norm(self._obstacles.centres - centre, axis=1)
                 nearest[row] = min(nearest[row], float(np.min(away)))
         return nearest
@@ -135,7 +101,7 @@ class ClearanceTester:
             batch = slice(i, i + _LARGEST_BATCH)
             row, other = rows[batch], others[batch]
             pair = matrices[row], obstacles.matrices[other], obstacles.centres[other] - centres[row]
-            low[batch], high[batch], meet[batch] = _pair_distances(*pair, needed[row])
+            low[batch], high[batch], meet[batch] = separation.bounded_distances(*pair, needed[row])
         found = [
             ("obstacle", obstacles.names[others[i]], float(-low[i]), int(rows[i]))
             for i in np.flatnonzero(meet)
@@ -164,16 +130,3 @@ class ClearanceTester:
             rooms.append(room)
         room = np.concatenate(rooms)
         return np.concatenate(all_rows), room, room, found
-
-
-def _pair_distances(
-    first: Array, second: Array, offset: Array, needed: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Lower and upper bounds of distances, exact below ``needed``, and who certainly meets."""
-    low, high = separation.cheap_bounds(first, second, offset)
-    meet = np.zeros(len(low), dtype=bool)
-    near = np.flatnonzero(low <= needed)
-    if len(near):
-        exact = separation.distances(first[near], second[near], offset[near])
-        low[near], high[near], meet[near] = exact.lower, exact.upper, exact.meet
-    return low, high, meet

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.scenario import Scenario
-from planners.verify.motion import placements
 
 Array = NDArray[np.float64]
 
@@ -18,9 +17,11 @@ _EVENLY = 600
 
 
 def fcl_contacts(
-    scenario: Scenario, configurations: Array, lower: Array, size: float
+    scenario: Scenario, configurations: Array, lower: Array, size: float, itself: bool = False
 ) -> tuple[int, int]:
-    """How many configurations (k, d) FCL tested, and in how many it sees an obstacle hit.
+    """How many configurations (k, d) FCL tested, and in how many it sees a hit.
+
+    A hit of an obstacle or, if ``itself`` is asked for, of one part by another.
 
     The ones tested are the closest and an even choice of the others, as far as their
     clearances ``lower`` (k,) exceed what FCL resolves in a scene of this ``size``.
@@ -29,17 +30,13 @@ def fcl_contacts(
     closest = chosen[np.argsort(lower[chosen])][:_CLOSEST]
     evenly = chosen[:: max(1, len(chosen) // _EVENLY)]
     chosen = np.unique(np.concatenate([closest, evenly]))
-    if not len(chosen) or not scenario.world.obstacles:
+    if not len(chosen) or not (itself or scenario.world.obstacles):
         return 0, 0
     from planners.fcl import FclBodies
 
     bodies = FclBodies(scenario.cspace())
-    n = scenario.dimension
-    positions, rotations = placements(scenario.robot, configurations[chosen])
     contacts = 0
-    for position, rotation in zip(positions, rotations, strict=True):
-        placed, turned = np.zeros(3), np.eye(3)
-        placed[:n], turned[:n, :n] = position, rotation
-        bodies.place(turned, placed)
-        contacts += bodies.collide()
+    for row in configurations[chosen]:
+        bodies.place_at(row)
+        contacts += bodies.meets_itself() if itself else bodies.meets_obstacle()
     return len(chosen), contacts

@@ -1,11 +1,12 @@
-"""OMPL's interpolation, and where it puts the robot, for many configurations at once."""
+"""OMPL's interpolation, and how far it moves a robot, for many configurations at once."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.robot import Robot
+from planners.verify.coordinates import coordinates
 
 Array = NDArray[np.float64]
 
@@ -13,22 +14,27 @@ Array = NDArray[np.float64]
 _SAME_QUATERNION = 1e-9
 
 
-def interpolate(robot: RigidRobot, first: Array, second: Array, s: Array) -> Array:
+def interpolate(robot: Robot, first: Array, second: Array, s: Array) -> Array:
     """Configurations (k, d) at s (k,) in [0, 1] of the motions from first to second (k, d)."""
-    n = robot.dimension
+    known = coordinates(robot)
     out = first + s[:, None] * (second - first)
-    if not robot.rotates:
-        return out
-    if n == 2:
-        out[:, 2] = first[:, 2] + s * _turn(first[:, 2], second[:, 2])
-        return out
-    angle, sign = _arc(first[:, 3:], second[:, 3:])
+    for angle in known.angles:
+        at = angle.place.start
+        out[:, at] = first[:, at] + s * _turn(first[:, at], second[:, at])
+    for quaternion in known.quaternions:
+        out[:, quaternion.place] = _slerp(
+            first[:, quaternion.place], second[:, quaternion.place], s
+        )
+    return out
+
+
+def _slerp(first: Array, second: Array, s: Array) -> Array:
+    angle, sign = _arc(first, second)
     same = angle == 0.0
     sine = np.where(same, 1.0, np.sin(angle))
     begin = np.where(same, 1.0, np.sin((1.0 - s) * angle) / sine)
     end = np.where(same, 0.0, sign * np.sin(s * angle) / sine)
-    out[:, 3:] = begin[:, None] * first[:, 3:] + end[:, None] * second[:, 3:]
-    return out
+    return begin[:, None] * first + end[:, None] * second
 
 
 def _turn(first: Array, second: Array) -> Array:
@@ -46,52 +52,52 @@ def _arc(first: Array, second: Array) -> tuple[Array, Array]:
     return np.where(apart, np.arccos(np.minimum(length, 1.0)), 0.0), np.where(product < 0, -1.0, 1)
 
 
-def speeds(robot: RigidRobot, first: Array, second: Array) -> Array:
+def speeds(robot: Robot, first: Array, second: Array) -> Array:
     """A bound (k,) of how far any point of the robot travels in the motions first to second."""
-    n = robot.dimension
-    travel = np.linalg.norm(second[:, :n] - first[:, :n], axis=1)
-    if not robot.rotates:
-        return travel
-    if n == 2:
-        turn = np.abs(_turn(first[:, 2], second[:, 2]))
-    else:
-        turn = 2.0 * _arc(first[:, 3:], second[:, 3:])[0]
-    reach = max(np.linalg.norm(p.centre) + np.max(p.semi_axes) for p in robot.parts)
-    return travel + turn * float(reach)
+    known = coordinates(robot)
+    own = np.zeros(len(first))
+    for turn in (*known.angles, *known.quaternions):
+        if not turn.joint:
+            own += turn.reach * _turned(first[:, turn.place], second[:, turn.place])
+    return _travel(robot, first, second) + own + joint_speeds(robot, first, second)
 
 
-def lengths(robot: RigidRobot, path: Array) -> tuple[float, float]:
+def joint_speeds(robot: Robot, first: Array, second: Array) -> Array:
+    """A bound (k,) of how far any point of the robot travels as its base sees it."""
+    known = coordinates(robot)
+    bound = np.zeros(len(first))
+    for joint in known.numbers:
+        at = joint.place.start
+        bound += joint.reach * np.abs(second[:, at] - first[:, at])
+    for turn in (*known.angles, *known.quaternions):
+        if turn.joint:
+            bound += turn.reach * _turned(first[:, turn.place], second[:, turn.place])
+    return bound
+
+
+def _turned(first: Array, second: Array) -> Array:
+    """The angles (k,) between headings (k, 1) or quaternions (k, 4)."""
+    if first.shape[1] == 1:
+        return np.abs(_turn(first[:, 0], second[:, 0]))
+    return 2.0 * _arc(first, second)[0]
+
+
+def _travel(robot: Robot, first: Array, second: Array) -> Array:
+    n = coordinates(robot).position
+    return np.asarray(np.linalg.norm(second[:, :n] - first[:, :n], axis=1))
+
+
+def lengths(robot: Robot, path: Array) -> tuple[float, float]:
     """OMPL's length of a path (m, d), and how far its base travels."""
     first, second = path[:-1], path[1:]
-    n = robot.dimension
-    travel = float(np.sum(np.linalg.norm(second[:, :n] - first[:, :n], axis=1)))
-    if not robot.rotates:
-        return travel, travel
-    if n == 2:
-        return travel + 0.5 * float(np.sum(np.abs(_turn(first[:, 2], second[:, 2])))), travel
-    return travel + float(np.sum(_arc(first[:, 3:], second[:, 3:])[0])), travel
-
-
-def placements(robot: RigidRobot, configurations: Array) -> tuple[Array, Array]:
-    """Base positions (k, n) and rotations (k, n, n) of configurations (k, d)."""
-    n = robot.dimension
-    positions = configurations[:, :n]
-    if robot.orientation is not None:
-        shape = (len(configurations), n, n)
-        return positions, np.broadcast_to(robot.orientation, shape)
-    if n == 2:
-        cosine, sine = np.cos(configurations[:, 2]), np.sin(configurations[:, 2])
-        rows = [[cosine, -sine], [sine, cosine]]
-        return positions, np.moveaxis(np.array(rows), -1, 0)
-    unit = configurations[:, 3:] / np.linalg.norm(configurations[:, 3:], axis=1, keepdims=True)
-    return positions, _rotations(unit)
-
-
-def _rotations(quaternions: Array) -> Array:
-    x, y, z, w = quaternions.T
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), w * w - x * x + y * y - z * z, 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), w * w - x * x - y * y + z * z],
-    ]
-    return np.moveaxis(np.array(rows), -1, 0)
+    known = coordinates(robot)
+    steps = _travel(robot, first, second)
+    travel = float(np.sum(steps))
+    for joint in known.numbers:
+        at = joint.place.start
+        steps = steps + joint.weight * np.abs(second[:, at] - first[:, at])
+    for angle in known.angles:
+        steps = steps + angle.weight * _turned(first[:, angle.place], second[:, angle.place])
+    for turn in known.quaternions:
+        steps = steps + turn.weight * _arc(first[:, turn.place], second[:, turn.place])[0]
+    return float(np.sum(steps)), travel

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.result import PathResult, PlanResult
 from ellipsoid_planning.scenario import Scenario
+from planners.verify.coordinates import Turn, coordinates
 from planners.verify.fcl_agreement import fcl_contacts
 from planners.verify.motion import lengths
 from planners.verify.report import Check, VerificationReport
-from planners.verify.sampling import SampledPath, sample_path
+from planners.verify.sampling import SampledPath, sample_path, sample_path_itself
 
 Array = NDArray[np.float64]
 
@@ -37,13 +38,21 @@ def verify_result(result: PlanResult) -> VerificationReport:
     stated = [*_state_checks(scenario, path, size), _length_check(scenario, result.path)]
     sampled = sample_path(scenario, path)
     tested, contacts = fcl_contacts(scenario, sampled.configurations, sampled.lower, size)
+    samples, resolved, apart = len(sampled.configurations), sampled.resolved, []
+    itself = sample_path_itself(scenario, path)
+    if itself is not None:
+        rows, lower = itself.configurations, itself.lower
+        more, found = fcl_contacts(scenario, rows, lower, size, itself=True)
+        tested, contacts = tested + more, contacts + found
+        samples, resolved = samples + len(rows), min(resolved, itself.resolved)
+        apart = [_self_check(itself)]
     agreement = Check("FCL", contacts == 0, f"sees {contacts} contacts in {tested} configurations")
     bodies = _body_checks(scenario, result.path, sampled, size)
     return VerificationReport(
-        (*stated, *bodies, agreement),
-        samples=len(sampled.configurations),
+        (*stated, *bodies, *apart, agreement),
+        samples=samples,
         sampled_clearance=sampled.smallest,
-        resolved=sampled.resolved,
+        resolved=resolved,
         fcl_samples=tested,
     )
 
@@ -62,14 +71,42 @@ def _state_checks(scenario: Scenario, path: Array, size: float) -> Iterator[Chec
     ):
         apart = _apart(scenario, state, wanted)
         yield Check(which, apart <= SAME_STATE * size, f"{apart:.3g} from the scenario's")
-    if scenario.robot.configuration_size == 7:
-        error = float(np.max(np.abs(np.linalg.norm(path[:, 3:], axis=1) - 1.0)))
+    known = coordinates(scenario.robot)
+    if known.quaternions:
+        norms = [np.linalg.norm(path[:, turn.place], axis=1) for turn in known.quaternions]
+        error = float(np.max(np.abs(np.array(norms) - 1.0)))
         yield Check("quaternions", error <= SAME_STATE, f"of unit length within {error:.3g}")
-    base = path[:, : scenario.dimension]
-    beyond = np.maximum(scenario.world.low - base, base - scenario.world.high)
-    worst = float(np.max(beyond))
+    base = path[:, : known.position]
+    low, high = scenario.world.low[: known.position], scenario.world.high[: known.position]
+    worst = float(np.max(np.maximum(low - base, base - high), initial=-np.inf))
     passed = worst <= ROUNDING * size
     yield Check("bounds", passed, f"beyond them by {worst:.6g}" if not passed else "kept")
+    joints = [turn for turn in (*known.numbers, *known.angles) if turn.joint]
+    if joints:
+        yield _limit_check(path, joints)
+
+
+def _limit_check(path: Array, joints: list[Turn]) -> Check:
+    """Joints move between their values at states, so that states tell it all."""
+    worst, name = -np.inf, ""
+    for joint in joints:
+        values = path[:, joint.place]
+        beyond = float(np.max(np.maximum(joint.lower - values, values - joint.upper)))
+        if beyond > worst:
+            worst, name = beyond, joint.joint
+    passed = worst <= SAME_STATE
+    detail = "kept" if passed else f"joint {name!r} is beyond its own by {worst:.6g}"
+    return Check("limits", passed, detail)
+
+
+def _self_check(itself: SampledPath) -> Check:
+    where = f"in motion {itself.place[0]} at {itself.place[1]:.6g}"
+    worst = itself.worst
+    if worst is None:
+        detail = f"no part meets another, at least {2.0 * itself.smallest:.6g} {where}"
+        return Check("self-collision", passed=True, detail=detail)
+    detail = f"part {worst.part!r} meets {worst.body!r}, about {worst.depth:.3g} deep, {where}"
+    return Check("self-collision", passed=False, detail=detail)
 
 
 def _apart(scenario: Scenario, one: Array, other: Array) -> float:

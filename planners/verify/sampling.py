@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
-from planners.verify.clearance import ClearanceTester, Meeting
-from planners.verify.motion import interpolate, speeds
+from planners.verify.clearance import ClearanceTester
+from planners.verify.meetings import Clearances, Meeting
+from planners.verify.motion import interpolate, joint_speeds, speeds
+from planners.verify.self_collision import SelfTester
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+_Bound = Callable[[Robot, Array, Array], Array]
 
 _FIRST_SAMPLES = 2000
 _FEWEST_A_MOTION = 16
@@ -53,15 +60,19 @@ class _Samples:
     upper: Array
 
 
+class _Tester(Protocol):
+    def test(self, configurations: Array, needed: Array) -> Clearances: ...
+
+
 class _Sampler:
     """Tests configurations along one path and remembers what was found."""
 
-    def __init__(self, scenario: Scenario, path: Array) -> None:
-        self._robot = scenario.robot
-        self._tester = ClearanceTester(scenario)
+    def __init__(self, robot: Robot, tester: _Tester, path: Array, bound: _Bound) -> None:
+        self._robot = robot
+        self._tester = tester
         # The last state is a motion of its own, which goes nowhere.
         self._first, self._second = path, np.vstack([path[1:], path[-1:]])
-        self.speeds = speeds(self._robot, self._first, self._second)
+        self.speeds = bound(robot, self._first, self._second)
         self._found: list[_Samples] = []
         self.smallest = np.inf
         self.worst: Meeting | None = None
@@ -101,13 +112,29 @@ class _Sampler:
 
 
 def sample_path(scenario: Scenario, path: Array) -> SampledPath:
+    """Sample a path (m, d) for what the robot meets around it, see `_sampled`."""
+    robot = scenario.robot
+    return _sampled(_Sampler(robot, ClearanceTester(scenario), path, speeds))
+
+
+def sample_path_itself(scenario: Scenario, path: Array) -> SampledPath | None:
+    """Sample a path (m, d) for parts that meet each other; clearances are half their distances.
+
+    None if there are no two parts that could.
+    """
+    tester = SelfTester(scenario.robot)
+    if not tester.pairs:
+        return None
+    return _sampled(_Sampler(scenario.robot, tester, path, joint_speeds))
+
+
+def _sampled(sampler: _Sampler) -> SampledPath:
     """Sample the motions of a path (m, d) evenly at first, then wherever bodies are close.
 
     Two samples resolve the motion between them when the robot's largest travel there is less
     than their clearances together, so that nothing can be reached. Where that does not hold,
     or where the clearance could fall clearly below the smallest found, halves are sampled.
     """
-    sampler = _Sampler(scenario, path)
     motion, begin, end = _first_intervals(sampler.speeds)
     spacing = sampler.speeds[motion] * (end - begin)
     at_begin = sampler.test(motion, begin, spacing)

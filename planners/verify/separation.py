@@ -59,6 +59,19 @@ def cheap_bounds(first: Array, second: Array, offset: Array) -> tuple[Array, Arr
     return value(u, offset, first, second, 1.0), apart
 
 
+def bounded_distances(
+    first: Array, second: Array, offset: Array, needed: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Lower and upper bounds of distances, exact below ``needed``, and who certainly meets."""
+    low, high = cheap_bounds(first, second, offset)
+    meet = np.zeros(len(low), dtype=bool)
+    near = np.flatnonzero(low <= needed)
+    if len(near):
+        exact = distances(first[near], second[near], offset[near])
+        low[near], high[near], meet[near] = exact.lower, exact.upper, exact.meet
+    return low, high, meet
+
+
 def _touching(first: Array, second: Array, offset: Array) -> tuple[Array, Array]:
     """Where both bodies, grown by one factor about their centres, touch first.
 

@@ -6,7 +6,8 @@ from ompl import base as ob
 
 from ellipsoid_planning.metric import base_travel, path_length
 from planners.spaces import state_access, state_space, write_configuration
-from planners.verify.motion import interpolate, lengths, placements, speeds
+from planners.verify.motion import interpolate, lengths, speeds
+from planners.verify.placement import placements
 from tests.planners.planner_scenes import KINDS, scenario_of
 
 

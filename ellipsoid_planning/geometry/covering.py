@@ -20,9 +20,8 @@ from ellipsoid_planning.geometry.solids import Solid
 Array = NDArray[np.float64]
 Group = tuple[Solid, ...]
 
-# Splits are compared by rough ellipsoids around the points that are farthest in some directions.
+# Splits are compared by rough ellipsoids.
 ROUGH = 1e-2
-ROUGH_DIRECTIONS = 200
 PLACES = (0.2, 0.35, 0.5, 0.65, 0.8)
 SAMPLES = 500
 UNION_SAMPLES = 4_000
@@ -141,18 +140,12 @@ def _rough(solids: Sequence[Solid]) -> Ellipsoid:
     if len(solids) == 1 and solids[0].form is not None:
         return solids[0].form
     points = np.concatenate([*[s.points for s in solids], *[_round_points(s) for s in solids]])
-    if len(points) > ROUGH_DIRECTIONS:
-        points = points[np.unique(np.argmax(points @ _directions().T, axis=0))]
     return enclosing_ellipsoid(points, tolerance=ROUGH).ellipsoid
 
 
 def _round_points(solid: Solid) -> Array:
     """Points around a curved solid."""
     return solid.surface.reshape(-1, 3) if len(solid.rounds.centres) else np.zeros((0, 3))
-
-
-def _directions() -> Array:
-    return unit_directions(3, ROUGH_DIRECTIONS)
 
 
 def _ball_points(count: int) -> Array:

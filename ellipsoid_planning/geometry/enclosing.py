@@ -165,7 +165,7 @@ def _extreme_points(points: Array) -> Array:
     n = points.shape[1]
     signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * n)).reshape(n, -1)
     directions = np.concatenate([np.eye(n), -np.eye(n), signs.T])
-    return points[np.unique(np.argmax(points @ directions.T, axis=0))]
+    return points[np.unique(np.argmax(directions @ points.T, axis=1))]
 
 
 def _farthest(points: Array, bodies: Rounds, centre: Array, matrix: Array) -> tuple[Array, float]:
@@ -173,7 +173,8 @@ def _farthest(points: Array, bodies: Rounds, centre: Array, matrix: Array) -> tu
     inward: Array = np.asarray(np.linalg.inv(matrix), dtype=float)
     found, largest = [], 0.0
     if len(points):
-        squares = np.sum(((points - centre) @ inward.T) ** 2, axis=1)
+        ball = (points - centre) @ inward.T
+        squares = np.einsum("ij,ij->i", ball, ball)
         worst = np.argpartition(squares, -min(CANDIDATES, len(squares)))[-CANDIDATES:]
         found.append(points[worst[squares[worst] > 1.0]])
         largest = float(squares.max())

@@ -80,7 +80,7 @@ class Solid:
         corners = _corners(planes)
         corners = corners[triangles.are_inside(corners, whole)]
         kept = self.points[self.points @ normal <= offset]
-        points = np.unique(np.concatenate([surface.reshape(-1, 3), kept, corners]), axis=0)
+        points = np.concatenate([surface.reshape(-1, 3), kept, corners])
         return Solid(points, Rounds.none(3), surface, whole=whole, planes=planes)
 
     def transform(self, rotation: Array, position: Array) -> Solid:

@@ -1,96 +1,19 @@
-"""The file that a roadmap is kept in: a zip archive of plain arrays and a header.
-
-It is one of numpy's .npz files with the member ``roadmap.json`` besides. Nothing in it is ever
-executed: arrays are numbers and truth values only, and no member is unpickled.
-"""
+"""The file that a roadmap is kept in, see array_files."""
 
 from __future__ import annotations
 
-import io
-import json
-import math
-import zipfile
-import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from ellipsoid_planning import __version__, atomic
+from ellipsoid_planning import array_files
+from ellipsoid_planning.array_files import Document, FileKind
 from ellipsoid_planning.errors import RoadmapError
 
 FORMAT = 1
-KIND = "ellipsoid-planning roadmap"
-
-_HEADER = "roadmap.json"
-_SUFFIX = ".npy"
-_KINDS = ("<f8", "<i8", "|b1")
-_REMEDY = "name another file, or delete this one to make it anew"
-# What zipfile, zlib and json raise for bytes that are not what they should be.
-_BROKEN = (
-    zipfile.BadZipFile,
-    zlib.error,
-    ValueError,
-    KeyError,
-    EOFError,
-    NotImplementedError,
-    RuntimeError,
-    OverflowError,
-    MemoryError,
-)
-
-
-@dataclass(frozen=True, eq=False)
-class Document:
-    """The content of a roadmap's file.
-
-    Attributes:
-        file: its name, for messages.
-        header: data that JSON can hold.
-        arrays: by name.
-    """
-
-    file: str
-    header: Mapping[str, Any]
-    arrays: Mapping[str, NDArray[Any]]
-
-    def number(self, place: str, entry: Mapping[str, Any], most: int = 1 << 62) -> int:
-        """The count ``entry[name]`` of a place ``….name``, from 0 to ``most``."""
-        name = place.rsplit(".", 1)[-1]
-        value = entry.get(name)
-        if type(value) is not int or not 0 <= value <= most:
-            raise self.error(f"{place}: expected a count, got {value!r}")
-        return value
-
-    def array(self, name: str, kind: type, *shape: int | None) -> NDArray[Any]:
-        """An array of the header's file, of the given type and shape; None fits any length."""
-        found = self.arrays.get(name)
-        if found is None:
-            raise self.error(f"{name}: this array is missing")
-        fits = len(found.shape) == len(shape) and all(
-            want in (None, have) for want, have in zip(shape, found.shape, strict=True)
-        )
-        if found.dtype != np.dtype(kind) or not fits:
-            wanted = ", ".join("any" if want is None else str(want) for want in shape)
-            raise self.error(
-                f"{name}: expected {np.dtype(kind)} numbers of shape ({wanted}),"
-                f" got {found.dtype} {found.shape}"
-            )
-        if found.dtype.kind == "f" and not np.isfinite(found).all():
-            raise self.error(f"{name}: expected finite numbers")
-        return found
-
-    def error(self, problem: str) -> RoadmapError:
-        """The exception for an entry that no roadmap of ours has."""
-        return RoadmapError(f"{self.file}: damaged roadmap: {problem}; {_REMEDY}")
-
-    def refusal(self, problem: str) -> RoadmapError:
-        """The exception for a roadmap that cannot be used here."""
-        return RoadmapError(f"{self.file}: {problem}; {_REMEDY}")
+ROADMAP = FileKind("roadmap", FORMAT, RoadmapError)
 
 
 def write_document(
@@ -101,39 +24,7 @@ def write_document(
     Raises:
         RoadmapError: there is another kind of file, or the file cannot be written.
     """
-    target = Path(path)
-    check_target(target)
-    if target.is_file():
-        read_header(target)
-    content = {"kind": KIND, "format": FORMAT, "version": __version__, **header}
-    text = json.dumps(content, default=_plain)
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w") as archive:
-        archive.writestr(_member(_HEADER), text)
-        for name, array in arrays.items():
-            member = io.BytesIO()
-            kind = np.dtype(array.dtype).newbyteorder("<")
-            npy.write_array(member, np.ascontiguousarray(array, kind), (1, 0), allow_pickle=False)
-            archive.writestr(_member(name + _SUFFIX), member.getvalue())
-    try:
-        atomic.write_bytes(target, stream.getvalue())
-    except OSError as error:
-        raise RoadmapError(f"{path}: cannot write the file: {error.strerror}") from None
-
-
-def _plain(value: Any) -> Any:
-    """numpy's numbers, which parameters may be, as Python's."""
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"expected data that JSON can hold, got {type(value).__name__}")
-
-
-def _member(name: str) -> zipfile.ZipInfo:
-    # Without the time of day, the same roadmap makes the same file.
-    info = zipfile.ZipInfo(name)
-    info.compress_type = zipfile.ZIP_DEFLATED
-    info.external_attr = 0o644 << 16
-    return info
+    array_files.write_document(ROADMAP, path, header, arrays)
 
 
 def check_target(path: Path) -> None:
@@ -142,11 +33,7 @@ def check_target(path: Path) -> None:
     Raises:
         RoadmapError: its folder is missing, or it is no ordinary file.
     """
-    if not path.parent.is_dir():
-        folder = str(path.parent)
-        raise RoadmapError(f"{path}: the folder {folder!r} does not exist; create it first")
-    if path.exists() and not path.is_file():
-        raise RoadmapError(f"{path}: expected a file, this is a folder or a device")
+    array_files.check_target(ROADMAP, path)
 
 
 def read_header(path: str | Path) -> dict[str, Any]:
@@ -155,7 +42,7 @@ def read_header(path: str | Path) -> dict[str, Any]:
     Raises:
         RoadmapError: the file cannot be read, or is no roadmap.
     """
-    return _read(path, arrays=False)[0]
+    return array_files.read_header(ROADMAP, path)
 
 
 def read_document(path: str | Path) -> Document:
@@ -165,69 +52,4 @@ def read_document(path: str | Path) -> Document:
         RoadmapError: the file cannot be read, is no roadmap, is damaged, or is of another format
             or version.
     """
-    header, arrays = _read(path, arrays=True)
-    return Document(str(path), header, arrays)
-
-
-def _read(path: str | Path, *, arrays: bool) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    check_target(Path(path))
-    try:
-        with Path(path).open("rb") as stream:
-            if not zipfile.is_zipfile(stream):
-                raise _foreign(path)
-            archive = zipfile.ZipFile(stream)
-            header = _header(path, archive)
-            if not arrays:
-                return header, {}
-            _check_version(path, header)
-            names = [name for name in archive.namelist() if name != _HEADER]
-            return header, {
-                name.removesuffix(_SUFFIX): _array(archive.read(name)) for name in names
-            }
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise RoadmapError(f"{path}: cannot read the roadmap: {reason}") from None
-    except _BROKEN as error:
-        raise RoadmapError(f"{path}: damaged roadmap: {error}; {_REMEDY}") from None
-
-
-def _header(path: str | Path, archive: zipfile.ZipFile) -> dict[str, Any]:
-    if _HEADER not in archive.namelist():
-        raise _foreign(path)
-    header = json.loads(archive.read(_HEADER))
-    if not isinstance(header, dict) or header.get("kind") != KIND:
-        raise _foreign(path)
-    return header
-
-
-def _foreign(path: str | Path) -> RoadmapError:
-    return RoadmapError(
-        f"{path}: expected a roadmap, this file is another one or was cut short;"
-        " name another file, or remove this one"
-    )
-
-
-def _check_version(path: str | Path, header: Mapping[str, Any]) -> None:
-    for name, expected in (("format", FORMAT), ("version", __version__)):
-        got = header.get(name)
-        if got != expected:
-            raise RoadmapError(
-                f"{path}: expected a roadmap of {name} {expected}, got {got}; {_REMEDY}"
-            )
-
-
-def _array(data: bytes) -> NDArray[Any]:
-    """The array of one member.
-
-    Raises:
-        ValueError: it is no array, or not of the numbers that we write.
-    """
-    stream = io.BytesIO(data)
-    if npy.read_magic(stream) != (1, 0):
-        raise ValueError("expected arrays in numpy's format 1.0")
-    shape, fortran, kind = npy.read_array_header_1_0(stream)
-    rest = stream.read()
-    if fortran or kind.str not in _KINDS or kind.itemsize * math.prod(shape) != len(rest):
-        raise ValueError(f"expected an array of plain numbers, got {kind} {shape}")
-    # A copy, because kernels would be compiled anew for arrays that are read-only.
-    return np.ndarray(shape, kind, buffer=rest).copy()
+    return array_files.read_document(ROADMAP, path)

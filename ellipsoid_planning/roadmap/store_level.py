@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.errors import RoadmapError
+from ellipsoid_planning.array_files import Document
+from ellipsoid_planning.errors import EllipsoidPlanningError
 from ellipsoid_planning.kernels import placement, roadmap_tables
 from ellipsoid_planning.kernels.containers import EMPTY, rehash
 from ellipsoid_planning.kernels.lines import CAPACITY
 from ellipsoid_planning.roadmap.grid import MOST_COLUMNS, Grid
 from ellipsoid_planning.roadmap.level import Level
-from ellipsoid_planning.roadmap.store_format import Document
 from ellipsoid_planning.roadmap.tables import grown, with_grid
 
 Array = NDArray[np.float64]
@@ -202,5 +202,5 @@ class StoredLevel:
     def _array(self, name: str, kind: type, *shape: int | None) -> NDArray[Any]:
         return self._document.array(f"{self._place}.{name}", kind, *shape)
 
-    def _error(self, name: str, problem: str) -> RoadmapError:
+    def _error(self, name: str, problem: str) -> EllipsoidPlanningError:
         return self._document.error(f"{self._place}.{name}: {problem}")

@@ -88,6 +88,10 @@ class RoadmapError(EllipsoidPlanningError):
     """A roadmap's file that cannot be read or written, or that does not belong to the scene."""
 
 
+class TableError(EllipsoidPlanningError):
+    """A safety function's table that cannot be made, read or written, or is another link's."""
+
+
 class ResultError(EllipsoidPlanningError):
     """A result file that cannot be read, or that contradicts itself."""
 

@@ -71,14 +71,14 @@ def _without_literals(dispatcher: Any) -> Any:
     return dispatcher
 
 
-def _compiled(function: Callable[..., Any], inline: str) -> Any:
+def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) -> Any:
     # The folder is read when the function is decorated; restoring it leaves other users of numba
     # in this process alone.
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
         options = {"error_model": "numpy", "fastmath": False, "inline": inline}
-        return _without_literals(numba.njit(cache=True, **options)(function))
+        return _without_literals(numba.njit(cache=True, nogil=nogil, **options)(function))
     finally:
         numba.config.CACHE_DIR = previous
 
@@ -100,3 +100,11 @@ def inlined(function: Callable[..., Any]) -> Any:
     keeps chains short.
     """
     return _compiled(function, "always")
+
+
+def released(function: Callable[..., Any]) -> Any:
+    """As :func:`kernel`, for long work that several threads share: it lets go of Python's lock.
+
+    Its caller must not touch the arguments meanwhile.
+    """
+    return _compiled(function, "never", nogil=True)

@@ -62,39 +62,46 @@ def in_arena(arenas, a, placed, i, scene):
 
 
 @kernel
-def placed_is_free(scene, placed):
-    """Whether the placed robot provably keeps its clearance from obstacles and arenas."""
+def part_is_free(scene, placed, i):
+    """Whether placed part ``i`` provably keeps its clearance from obstacles and arenas."""
     obstacles, arenas = obstacle_rows(scene), arena_rows(scene)
     parts, tree = part_rows(scene), tree_rows(scene)
-    clearance = scene[CLEARANCE]
-    required = clearance + ROUNDING * scene[SCALE]
-    for i in range(placed.shape[0]):
-        for a in range(arenas.shape[0]):
-            if not in_arena(arenas, a, placed, i, scene):
+    required = scene[CLEARANCE] + ROUNDING * scene[SCALE]
+    for a in range(arenas.shape[0]):
+        if not in_arena(arenas, a, placed, i, scene):
+            return False
+    cx = placed[i, PLACED_CENTRE]
+    cy = placed[i, PLACED_CENTRE + 1]
+    cz = placed[i, PLACED_CENTRE + 2]
+    ex = placed[i, PLACED_EXTENT] + required
+    ey = placed[i, PLACED_EXTENT + 1] + required
+    ez = placed[i, PLACED_EXTENT + 2] + required
+    x0, y0, z0, x1, y1, z1 = cx - ex, cy - ey, cz - ez, cx + ex, cy + ey, cz + ez
+    node = next_overlap(tree, 0, x0, y0, z0, x1, y1, z1)
+    while node >= 0:
+        j = int(tree[node, NODE_OBSTACLE])
+        reach = obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS] + 2.0 * required
+        distance = norm(
+            cx - obstacles[j, BODY_CENTRE],
+            cy - obstacles[j, BODY_CENTRE + 1],
+            cz - obstacles[j, BODY_CENTRE + 2],
+        )
+        if distance <= reach:
+            start = obstacles[j, BODY_RADIUS]
+            lam = start / (start + parts[i, PART_RADIUS])
+            value = separation(obstacles, j, placed, i, lam, required, DECIDE)[0]
+            if not value > required:
                 return False
-        cx = placed[i, PLACED_CENTRE]
-        cy = placed[i, PLACED_CENTRE + 1]
-        cz = placed[i, PLACED_CENTRE + 2]
-        ex = placed[i, PLACED_EXTENT] + required
-        ey = placed[i, PLACED_EXTENT + 1] + required
-        ez = placed[i, PLACED_EXTENT + 2] + required
-        x0, y0, z0, x1, y1, z1 = cx - ex, cy - ey, cz - ez, cx + ex, cy + ey, cz + ez
-        node = next_overlap(tree, 0, x0, y0, z0, x1, y1, z1)
-        while node >= 0:
-            j = int(tree[node, NODE_OBSTACLE])
-            reach = obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS] + 2.0 * required
-            distance = norm(
-                cx - obstacles[j, BODY_CENTRE],
-                cy - obstacles[j, BODY_CENTRE + 1],
-                cz - obstacles[j, BODY_CENTRE + 2],
-            )
-            if distance <= reach:
-                start = obstacles[j, BODY_RADIUS]
-                lam = start / (start + parts[i, PART_RADIUS])
-                value = separation(obstacles, j, placed, i, lam, required, DECIDE)[0]
-                if not value > required:
-                    return False
-            node = next_overlap(tree, node + 1, x0, y0, z0, x1, y1, z1)
+        node = next_overlap(tree, node + 1, x0, y0, z0, x1, y1, z1)
+    return True
+
+
+@kernel
+def placed_is_free(scene, placed):
+    """Whether the placed robot provably keeps its clearance from obstacles and arenas."""
+    for i in range(placed.shape[0]):  # noqa: SIM110 (numba compiles loops best)
+        if not part_is_free(scene, placed, i):
+            return False
     return True
 
 

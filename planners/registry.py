@@ -80,6 +80,12 @@ class BoundPlanner:
         return planner
 
     def _check_taken(self, planner: ob.Planner, values: Mapping[str, Any]) -> None:
+        if values.get("ordered_sampling") and not (
+            planner.getInformedSampling() or planner.getSampleRejection()
+        ):  # it orders the samples of either, and without them solving ends the process
+            raise PlannerError(
+                f"{self.name}.ordered_sampling: needs informed_sampling or sample_rejection"
+            )
         # OMPL refuses some combinations with a line in its log and nothing else.
         for name, value in values.items():
             getter = getattr(planner, "get" + self.parameters[name].setter.removeprefix("set"))

@@ -36,6 +36,8 @@ def test_every_parameter_reaches_its_planner(name, parameter):
     values = {parameter: entry.parameter_kinds()[parameter](1)}
     if parameter == "use_just_in_time_sampling":
         values["use_k_nearest"] = False
+    if parameter == "ordered_sampling":
+        values["sample_rejection"] = True
     with ompl_output("silent"):
         planner = entry.allocate(space_information(scenario_of("planar").cspace()), values)
     assert type(planner) is getattr(og, name)
@@ -145,3 +147,11 @@ def test_wrong_types_for_our_own_planners_are_refused(kind, given, monkeypatch):
     monkeypatch.setattr(OwnPlanner, "parameter_kinds", lambda _: {"value": kind})
     with pytest.raises(PlannerError, match=r"Fake\.value: expected"):
         checked_parameters(OwnPlanner("Fake", "nowhere"), {"value": given})
+
+
+def test_ordered_sampling_alone_is_refused_because_it_ends_the_process():
+    si = space_information(scenario_of("planar").cspace())
+    entry = find_planner("RRTstar")
+    with pytest.raises(PlannerError, match="needs informed_sampling or sample_rejection"):
+        entry.allocate(si, {"ordered_sampling": True})
+    entry.allocate(si, {"ordered_sampling": True, "sample_rejection": True})

@@ -13,6 +13,7 @@ from planners.fcl import FclValidityChecker
 from planners.setup import simple_setup
 from planners.solve import plan
 from planners.spaces import state_access
+from tests.planners import articulated_scenes
 from tests.planners.planner_scenes import random_states, scenario_of
 
 STATM = Path("/proc/self/statm")
@@ -83,3 +84,27 @@ def test_reading_and_simplifying_paths_leaves_nothing():
 def test_whole_plans_leave_nothing(name):
     scenario = scenario_of("planar")
     assert growth(lambda: plan(scenario, name, seed=1), 150) < 10_000
+
+
+@pytest.mark.parametrize("checker", ["plugin", "fcl"])
+def test_articulated_setups_are_freed(checker):
+    scenario = articulated_scenes.scenario_of("mixed spatial")
+    cspace = scenario.cspace()
+    assert growth(lambda: simple_setup(scenario, checker, cspace=cspace), 500) < 1000
+
+
+@pytest.mark.parametrize("checker", ["plugin", "fcl"])
+def test_articulated_states_leave_nothing(checker):
+    scenario = articulated_scenes.scenario_of("mixed spatial")
+    access = state_access(scenario.cspace())
+    si = simple_setup(scenario, checker, seed=1).getSpaceInformation()
+    states, copy = random_states(si, 100), si.allocState()
+
+    def action() -> None:
+        for first, second in pairwise(states):
+            si.isValid(first)
+            if checker == "plugin":
+                si.checkMotion(first, second)
+            access.write(copy, access.read(second))
+
+    assert growth(action, 50) < 1000

@@ -72,6 +72,11 @@ class ArticulatedCSpace(CSpace):
         """What kernels know of robot and world, workspaces included (kernels.robot_model)."""
         return new_articulated_model(self.scene, self.kinematics)
 
+    @property
+    def reach(self) -> float:
+        """Largest distance of a point of the robot from its base, whatever its joints do."""
+        return self.articulated.reach
+
     def poses(self, configurations: ArrayLike) -> Array:
         """Rows (m, 7 + V) of configurations (m, d) or (d,); see cspace.articulated_rows."""
         return rows_of(self.articulated, configurations)

@@ -90,12 +90,18 @@ def _joint_row(joint: Joint, parent: _Placement, value: int, align: Array, reach
     return row
 
 
+def _tangents(kind: str) -> int:
+    """How many numbers of a step a joint takes."""
+    return 3 if kind == BALL else 1
+
+
 def bodies_of(robot: ArticulatedRobot) -> Bodies:
     """The bodies of ``robot``: links that cannot move against each other are one."""
     reaches, weights = joint_reaches(robot), robot.joint_weights
     values = {name: part.start - robot.base_size + 7 for name, part in robot.joint_slices.items()}
     places = {robot.root: _Placement(0, np.eye(3), np.zeros(3))}
     rows: list[Array] = []
+    tangent = 6
     for joint in joints_in_order(robot.joints, robot.root):
         parent = places[joint.parent]
         if joint.type == FIXED:
@@ -107,6 +113,8 @@ def bodies_of(robot: ArticulatedRobot) -> Bodies:
         align = _aligned(joint)
         row = _joint_row(joint, parent, values[joint.name], align, reaches[joint.name])
         row[layout.JOINT_WEIGHT] = weights[robot.joint_names.index(joint.name)]
+        row[layout.JOINT_TANGENT] = tangent
+        tangent += _tangents(joint.type)
         rows.append(row)
         places[joint.child] = _Placement(len(rows), align.T, np.zeros(3))
     stand = [places[link] for link in robot.part_links]
@@ -154,6 +162,9 @@ def pack_kinematics(robot: ArticulatedRobot, bodies: Bodies) -> Array:
     header[layout.PARTS] = len(bodies.parts)
     header[layout.WIDTH] = 7 + robot.configuration_size - robot.base_size
     header[layout.BASE_ROTATES] = robot.rotates
+    header[layout.STEP_SIZE] = 6 + sum(_tangents(joint.type) for joint in robot.moving_joints)
+    header[layout.BASE_MOVES] = robot.base != FIXED_BASE
+    header[layout.ROBOT_REACH] = robot_reach(robot)
     pairs = may_meet(robot, bodies.owners).astype(float)
     tables = (bodies.joints, bodies.owners, bodies.shapes, pairs)
     packed = np.concatenate([header, *(table.ravel() for table in tables)])

@@ -78,6 +78,16 @@ class CSpace:
         return self.scene
 
     @property
+    def reach(self) -> float:
+        """Largest distance of a point of the robot from its base."""
+        return self.size
+
+    @property
+    def size(self) -> float:
+        """What gaps are compared with: how far points of a rigid piece get from its own frame."""
+        return float(layout.part_rows(self.scene)[:, layout.PART_REACH].max())
+
+    @property
     def dimension(self) -> int:
         """Dimension n of the workspace, 2 or 3."""
         return self.world.dimension

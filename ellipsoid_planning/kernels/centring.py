@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from .compile import inlined, kernel
 from .contact_model import (
-    ALONG,
     CAPACITY,
     GRADIENT,
     MODEL,
@@ -27,8 +26,9 @@ from .contact_model import (
     moved,
     smallest_gap,
 )
-from .layout import HIGH, LOW, PART_REACH, new_placed, part_rows
-from .simplex import MOST_ACTIVE, minimise
+from .layout import HIGH, LOW, new_placed
+from .robot_model import reach_of, scene_of, step_size
+from .simplex import SPARE_ACTIVE, minimise
 
 # Largest proximal parameter s, in units of the robot's reach.
 _LONGEST_STEPS = 100.0
@@ -57,54 +57,47 @@ class Workspace(NamedTuple):
 
 
 @kernel
-def new_workspace(scene):
-    """A workspace for the robot of ``scene``."""
+def new_workspace(robot):
+    """A workspace for ``robot``."""
+    size = step_size(robot)
+    active, pose = size + SPARE_ACTIVE, 2 * size
     return Workspace(
-        new_placed(scene),
-        np.empty((CAPACITY, MODEL)),
-        np.empty((CAPACITY, MODEL)),
-        np.empty((MOST_ACTIVE, MOST_ACTIVE + 2)),
-        np.empty(MOST_ACTIVE + 1, dtype=np.int64),
-        np.empty(MOST_ACTIVE),
-        np.empty(6),
-        np.empty(7),
-        np.empty(6),
-        np.empty(6),
-        np.empty(6),
-        np.empty(7),
+        new_placed(scene_of(robot)),
+        np.empty((CAPACITY, MODEL + size)),
+        np.empty((CAPACITY, MODEL + size)),
+        np.empty((active, active + 2)),
+        np.empty(active + 1, dtype=np.int64),
+        np.empty(active),
+        np.empty(size),
+        np.empty(pose),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.empty(pose),
         np.zeros(1, dtype=np.int64),
         np.zeros(_REMEMBERED, dtype=np.int64) - 1,
         np.empty((_REMEMBERED, 3)),
     )
 
 
-@kernel
-def robot_reach(scene):
-    """Largest distance of a point of the robot from its base."""
-    parts = part_rows(scene)
-    reach = 0.0
-    for i in range(parts.shape[0]):
-        reach = max(reach, parts[i, PART_REACH])
-    return reach
-
-
 @inlined
 def _put_across(model, count, across):
-    """Split the gradients of a model: the part along ``across`` (column ALONG), and the rest."""
+    """Split the gradients of a model: the part along ``across`` (last column), and the rest."""
+    size = across.shape[0]
     for k in range(count):
         along = 0.0
-        for m in range(6):
+        for m in range(size):
             along += model[k, GRADIENT + m] * across[m]
-        for m in range(6):
+        for m in range(size):
             model[k, GRADIENT + m] -= along * across[m]
-        model[k, ALONG] = along
+        model[k, GRADIENT + size] = along
 
 
 @kernel
 def step_length(step):
-    """Euclidean length of a step (6,)."""
+    """Euclidean length of a step."""
     square = 0.0
-    for m in range(6):
+    for m in range(step.shape[0]):
         square += step[m] * step[m]
     return math.sqrt(square)
 
@@ -116,26 +109,26 @@ def _shortened(step, longest):
     if length <= longest:
         return 1.0
     scale = longest / length
-    for m in range(6):
+    for m in range(step.shape[0]):
         step[m] *= scale
     return scale
 
 
 @kernel
-def centre(scene, pose, across, turns, within, enough, precision, steps, work):
-    """Move ``pose`` (7,) to where its smallest gap is largest: (gap, slope).
+def centre(robot, pose, across, turns, within, enough, precision, steps, work):
+    """Move ``pose`` to where its smallest gap is largest: (gap, slope).
 
     Stops once the gap is ``enough``, when no more than ``precision`` of it is to gain, or after
-    ``steps`` models. ``across`` (6,) is a unit direction to which steps stay orthogonal, or zero;
+    ``steps`` models. ``across`` is a unit direction to which steps stay orthogonal, or zero;
     ``turns`` whether the robot may turn. Returns the gap, an estimate of what can be proved, and
     how it changes along ``across``.
     """
-    reach = robot_reach(scene)
+    scene, reach = scene_of(robot), reach_of(robot)
     inverse_reach = 1.0 / reach if turns else 0.0
-    placed, trial, step = work.placed, work.trial, work.step
+    placed, trial, step = work.placed, work.trial[: pose.shape[0]], work.step
     here, there = work.first, work.second
     count = contact_model(
-        scene, placed, pose, within, inverse_reach, here, work.pairs, work.keys, work.known
+        robot, placed, pose, within, inverse_reach, here, work.pairs, work.keys, work.known
     )
     _put_across(here, count, across)
     gap = smallest_gap(here, count, within)
@@ -145,8 +138,8 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
             break
         promised = minimise(here, count, size, work.matrix, work.active, work.weights, step)
         slope = 0.0
-        for k in range(work.active[MOST_ACTIVE]):
-            slope += work.weights[k] * here[work.active[k], ALONG]
+        for k in range(work.active[work.weights.shape[0]]):
+            slope += work.weights[k] * here[work.active[k], GRADIENT + step.shape[0]]
         gain = _shortened(step, longest) * (promised - gap)
         if gain <= precision * abs(gap) + 1e-14 * reach:
             if size >= _LONGEST_STEPS * reach:
@@ -154,11 +147,11 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
             # What is left to gain may lie in a direction of little curvature.
             size *= 10.0
             continue
-        moved(pose, step, inverse_reach, trial)
+        moved(robot, pose, step, inverse_reach, trial)
         for k in range(3):
             trial[k] = min(max(trial[k], scene[LOW + k]), scene[HIGH + k])
         more = contact_model(
-            scene, placed, trial, within, inverse_reach, there, work.pairs, work.keys, work.known
+            robot, placed, trial, within, inverse_reach, there, work.pairs, work.keys, work.known
         )
         value = smallest_gap(there, more, within)
         # A gain that falls short of the promise by a share tells the curvature, and that the best
@@ -170,7 +163,7 @@ def centre(scene, pose, across, turns, within, enough, precision, steps, work):
             longest = min(2.0 * longest, 0.5 * reach)
         size = min(size / (2.0 * share), _LONGEST_STEPS * reach)
         if value > gap:
-            for k in range(7):
+            for k in range(pose.shape[0]):
                 pose[k] = trial[k]
             here, there = there, here
             count, gap = more, value

@@ -2,7 +2,10 @@
 
 A step (t, r) in ℝ⁶ moves the base by t and turns the robot about it by the rotation vector r/ρ,
 ρ being the robot's reach, so that all six components are lengths. A row of the model holds the gap
-of one pair, clearance taken off, and its gradient with respect to such steps.
+of one pair, clearance taken off, and its gradient with respect to such steps. Articulated robots
+have more components (articulated_steps), and rows for their own parts against each other.
+
+``robot`` stands for what kernels know of a robot and its world (robot_model).
 """
 
 import math
@@ -29,14 +32,23 @@ from .layout import (
     tree_rows,
 )
 from .linear import cross, norm, product, times, transposed_times
-from .placement import place
+from .robot_model import (
+    add_joints,
+    base_moves,
+    move_other,
+    next_own_pair,
+    other_difference,
+    own_gap,
+    place_at,
+    scene_of,
+    step_size,
+)
 from .separation import CONVERGE, polish, separation
 
 GAP = 0
 GRADIENT = 1
-# The part of the gradient along a direction that steps stay across, kept by centring.
-ALONG = 7
-MODEL = 8
+# A row holds a gap, its gradient, and last the part of it along a direction that steps stay across.
+MODEL = 2
 # Rows of a model; the widest gaps are left out if there are more pairs.
 CAPACITY = 32
 # Steps of the ascent to where a part is near a wall, and how near to each other, in units of its
@@ -46,22 +58,34 @@ _SAME = 1e-2
 
 
 @inlined
-def _enter(model, count, gap, ux, uy, uz, px, py, pz, inverse_reach):
-    """Add the row of a gap that grows as the point p, seen from the base, moves along u."""
-    row = count
-    if count == CAPACITY:
-        for k in range(CAPACITY):
-            if row == CAPACITY or model[k, GAP] > model[row, GAP]:
-                row = k
-        if model[row, GAP] <= gap:
-            return count
-    tx, ty, tz = cross(px, py, pz, ux, uy, uz)
+def _enter(robot, model, count, gap, i, ux, uy, uz, px, py, pz, pose, inverse_reach):
+    """Add the row of a gap that grows as the point p of part ``i`` moves along u."""
+    row = _free_row(model, count, gap)
+    if row < 0:
+        return count
+    moves = base_moves(robot)
+    tx, ty, tz = cross(px - pose[0], py - pose[1], pz - pose[2], ux, uy, uz)
     model[row, GAP] = gap
-    model[row, 1], model[row, 2], model[row, 3] = ux, uy, uz
+    model[row, 1], model[row, 2], model[row, 3] = moves * ux, moves * uy, moves * uz
     model[row, 4] = tx * inverse_reach
     model[row, 5] = ty * inverse_reach
     model[row, 6] = tz * inverse_reach
+    for m in range(6, step_size(robot)):
+        model[row, GRADIENT + m] = 0.0
+    add_joints(robot, i, 1.0, ux, uy, uz, px, py, pz, model[row, GRADIENT:])
     return min(count + 1, CAPACITY)
+
+
+@kernel
+def _free_row(model, count, gap):
+    """The row for one more gap: a new one, that of the widest gap, or −1 if that is narrower."""
+    if count < CAPACITY:
+        return count
+    row = 0
+    for k in range(CAPACITY):
+        if model[k, GAP] > model[row, GAP]:
+            row = k
+    return row if model[row, GAP] > gap else -1
 
 
 @kernel
@@ -79,7 +103,9 @@ def _farthest(placed, i, ux, uy, uz):
 
 
 @inlined
-def _enter_wall(model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach):
+def _enter_wall(
+    robot, model, count, arenas, a, i, px, py, pz, pose, within, clearance, inverse_reach
+):
     """Add the row of the gap between the point p of the robot and the wall of arena ``a``."""
     wx, wy, wz = times(
         arenas,
@@ -98,17 +124,17 @@ def _enter_wall(model, count, arenas, a, px, py, pz, pose, within, clearance, in
     gap = (1.0 - root) * root / steep - clearance
     if gap < within:
         ux, uy, uz = -nx / steep, -ny / steep, -nz / steep
-        px, py, pz = px - pose[0], py - pose[1], pz - pose[2]
-        count = _enter(model, count, gap, ux, uy, uz, px, py, pz, inverse_reach)
+        count = _enter(robot, model, count, gap, i, ux, uy, uz, px, py, pz, pose, inverse_reach)
     return count
 
 
 @kernel
-def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, inverse_reach):
+def _enter_walls(robot, model, count, arenas, a, placed, i, pose, within, inverse_reach):
     """Add rows of part ``i`` and the wall of arena ``a``, which it can be near at several places.
 
     They are local maxima of |w| over the part, looked for from the tips of its axes.
     """
+    scene = scene_of(robot)
     clearance = scene[CLEARANCE]
     wx, wy, wz = times(
         arenas,
@@ -132,7 +158,9 @@ def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, invers
     )
     if length > 0.0:
         fx, fy, fz = _farthest(placed, i, ux / length, uy / length, uz / length)
-    count = _enter_wall(model, count, arenas, a, fx, fy, fz, pose, within, clearance, inverse_reach)
+    count = _enter_wall(
+        robot, model, count, arenas, a, i, fx, fy, fz, pose, within, clearance, inverse_reach
+    )
     for k in range(6):
         sign, axis = 1.0 - 2.0 * (k % 2), k // 2
         ax = placed[i, PLACED_MATRIX + axis]
@@ -158,7 +186,19 @@ def _enter_walls(model, count, arenas, a, placed, i, pose, within, scene, invers
             px, py, pz = _farthest(placed, i, nx, ny, nz)
         if norm(px - fx, py - fy, pz - fz) > _SAME * size:
             count = _enter_wall(
-                model, count, arenas, a, px, py, pz, pose, within, clearance, inverse_reach
+                robot,
+                model,
+                count,
+                arenas,
+                a,
+                i,
+                px,
+                py,
+                pz,
+                pose,
+                within,
+                clearance,
+                inverse_reach,
             )
     return count
 
@@ -192,14 +232,15 @@ def _gap(obstacles, j, parts, placed, i, keys, known):
 
 
 @kernel
-def contact_model(scene, placed, pose, within, inverse_reach, model, work, keys, known):
-    """Fill ``model`` (CAPACITY, MODEL) with every pair whose gap is below ``within``: their count.
+def contact_model(robot, placed, pose, within, inverse_reach, model, work, keys, known):
+    """Fill ``model`` (CAPACITY, ·) with every pair whose gap is below ``within``: their count.
 
     ``inverse_reach`` is 1/ρ, or 0 for a robot that does not turn. ``work`` (1,) counts the pairs
     looked at; ``keys`` and ``known`` remember directions of gaps. Gaps are negative where bodies
     meet. Those of arenas are first-order estimates, exact at contact.
     """
-    place(scene, pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], placed)
+    place_at(robot, pose, placed)
+    scene = scene_of(robot)
     obstacles, arenas = obstacle_rows(scene), arena_rows(scene)
     parts, tree = part_rows(scene), tree_rows(scene)
     clearance = scene[CLEARANCE]
@@ -208,7 +249,7 @@ def contact_model(scene, placed, pose, within, inverse_reach, model, work, keys,
         work[0] += arenas.shape[0]
         for a in range(arenas.shape[0]):
             count = _enter_walls(
-                model, count, arenas, a, placed, i, pose, within, scene, inverse_reach
+                robot, model, count, arenas, a, placed, i, pose, within, inverse_reach
             )
         cx = placed[i, PLACED_CENTRE]
         cy = placed[i, PLACED_CENTRE + 1]
@@ -226,10 +267,34 @@ def contact_model(scene, placed, pose, within, inverse_reach, model, work, keys,
             gap -= clearance
             if gap < within:
                 px, py, pz = _farthest(placed, i, -ux, -uy, -uz)
-                px, py, pz = px - pose[0], py - pose[1], pz - pose[2]
-                count = _enter(model, count, gap, ux, uy, uz, px, py, pz, inverse_reach)
+                count = _enter(
+                    robot, model, count, gap, i, ux, uy, uz, px, py, pz, pose, inverse_reach
+                )
             node = next_overlap(tree, node + 1, x0, y0, z0, x1, y1, z1)
+    pair = next_own_pair(robot, placed, -1, within)
+    while pair >= 0:
+        work[0] += 1
+        count = _enter_own(robot, model, count, placed, pair, within)
+        pair = next_own_pair(robot, placed, pair, within)
     return count
+
+
+@inlined
+def _enter_own(robot, model, count, placed, pair, within):
+    """Add the row of two of the robot's own parts, whatever the clearance is."""
+    i, j = pair // placed.shape[0], pair % placed.shape[0]
+    gap, ux, uy, uz, _ = own_gap(robot, placed, i, j)
+    row = _free_row(model, count, gap)
+    if not gap < within or row < 0:
+        return count
+    model[row, GAP] = gap
+    for m in range(step_size(robot)):
+        model[row, GRADIENT + m] = 0.0
+    px, py, pz = _farthest(placed, j, -ux, -uy, -uz)
+    add_joints(robot, j, 1.0, ux, uy, uz, px, py, pz, model[row, GRADIENT:])
+    px, py, pz = _farthest(placed, i, ux, uy, uz)
+    add_joints(robot, i, -1.0, ux, uy, uz, px, py, pz, model[row, GRADIENT:])
+    return min(count + 1, CAPACITY)
 
 
 @kernel
@@ -242,8 +307,9 @@ def smallest_gap(model, count, within):
 
 
 @kernel
-def moved(pose, step, inverse_reach, out):
-    """Write ``pose`` moved by ``step`` (6,) to ``out`` (7,)."""
+def moved(robot, pose, step, inverse_reach, out):
+    """Write ``pose`` moved by ``step`` to ``out``; joints stay within their limits."""
+    move_other(robot, pose, step, out)
     for k in range(3):
         out[k] = pose[k] + step[k]
     rx, ry, rz = step[3] * inverse_reach, step[4] * inverse_reach, step[5] * inverse_reach
@@ -258,18 +324,19 @@ def moved(pose, step, inverse_reach, out):
 
 
 @kernel
-def samples_along(first, step, inverse_reach, out):
-    """Write poses evenly along ``step`` (6,) from ``first``, ends excluded, to ``out`` (m, 7)."""
-    part = np.empty(6)
+def samples_along(robot, first, step, inverse_reach, out):
+    """Write poses evenly along ``step`` from ``first``, ends excluded, to ``out`` (m, 7 + V)."""
+    part = np.empty(step.shape[0])
     for k in range(out.shape[0]):
-        for m in range(6):
+        for m in range(step.shape[0]):
             part[m] = step[m] * (k + 1.0) / (out.shape[0] + 1.0)
-        moved(first, part, inverse_reach, out[k])
+        moved(robot, first, part, inverse_reach, out[k])
 
 
 @kernel
-def difference(first, last, reach, out):
-    """Write the step (6,) that moves the pose ``first`` to ``last``, the shorter way round."""
+def difference(robot, first, last, reach, out):
+    """Write the step that moves the pose ``first`` to ``last``, the shorter way round."""
+    other_difference(robot, first, last, out)
     for k in range(3):
         out[k] = last[k] - first[k]
     x, y, z, w = product(

@@ -29,7 +29,11 @@ JOINT_COUNT = 0
 PARTS = 1
 WIDTH = 2
 BASE_ROTATES = 3
-KINEMATICS_HEADER = 4
+# How many numbers a step has, whether the base moves at all, how far points get from the base.
+STEP_SIZE = 4
+BASE_MOVES = 5
+ROBOT_REACH = 6
+KINEMATICS_HEADER = 7
 
 REVOLUTE = 0
 CONTINUOUS = 1
@@ -47,7 +51,9 @@ JOINT_TRANSLATION = 14
 # Largest distance of a downstream point from the joint's origin, and the weight in OMPL's metric.
 JOINT_REACH = 17
 JOINT_WEIGHT = 18
-JOINT = 19
+# Where the joint stands in steps (see articulated_steps).
+JOINT_TANGENT = 19
+JOINT = 20
 
 # Shape rows
 SHAPE_MATRIX = 0

@@ -7,11 +7,11 @@ a play ε is followed in steps of about √(ε/κ), a straight one in one.
 
 import math
 
-from .centring import centre, robot_reach, step_length
+from .centring import centre, step_length
 from .compile import inlined, kernel
 from .contact_model import GAP, GRADIENT, contact_model, difference, moved, smallest_gap
-from .layout import CLEARANCE
-from .motion import BUDGET, SMALL_ROTATION, prove_motion
+from .motion import SMALL_ROTATION
+from .robot_model import hold_other, limit_proofs, pairs_looked_at, prove_way, reach_of
 
 # How far following has come (PROGRESS[STATE]).
 NEW = 0.0
@@ -51,19 +51,19 @@ _BENT = 6.0
 
 
 @inlined
-def _begin(scene, progress, direction, turns, within, wide, path, work):
+def _begin(robot, progress, direction, turns, within, wide, path, work):
     """Move the first pose to the narrowest place near it, centred across ``direction``.
 
     There the gap of centred poses, as a function of where they lie along the direction, has the
     slope 0; the secant method finds it, also through poses that are not free.
     """
-    reach = robot_reach(scene)
+    reach = reach_of(robot)
     inverse_reach = 1.0 / reach if turns else 0.0
     length = max(step_length(direction), 1e-300)
-    for m in range(6):
+    for m in range(direction.shape[0]):
         direction[m] /= length
     here, ahead = path[0], work.ahead
-    gap, slope = centre(scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
+    gap, slope = centre(robot, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work)
     progress[LAST_GAP] = gap
     if gap >= wide or gap <= 0.0:
         # The narrowest place leaves even less room than this one.
@@ -98,18 +98,18 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
             size *= 1.7
             if abs(target) > 2.0 * reach:
                 break
-        for m in range(6):
+        for m in range(direction.shape[0]):
             ahead[m] = (target - place) * direction[m]
-        moved(here, ahead, inverse_reach, here)
+        moved(robot, here, ahead, inverse_reach, here)
         place = target
         gap, slope = centre(
-            scene, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work
+            robot, here, direction, turns, within, wide, _ROUGH, _FIRST_CENTRING, work
         )
         if gap >= wide or gap <= 0.0:
             break
     if gap > 0.0:
         gap, slope = centre(
-            scene, here, direction, turns, within, wide, _PRECISE, _FIRST_CENTRING, work
+            robot, here, direction, turns, within, wide, _PRECISE, _FIRST_CENTRING, work
         )
     progress[LAST_GAP] = gap
     if gap <= 0.0:
@@ -119,7 +119,7 @@ def _begin(scene, progress, direction, turns, within, wide, path, work):
 
 
 @inlined
-def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
+def _along_walls(robot, pose, inverse_reach, within, direction, slide, work):
     """Write to ``slide`` the translation near ``direction`` along the bodies nearest to the robot.
 
     Their hyperplanes clear it, at any length. If there is none (the bodies cage the robot, or it
@@ -127,7 +127,7 @@ def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
     """
     model, normals = work.first, work.second
     count = contact_model(
-        scene, work.placed, pose, within, inverse_reach, model, work.pairs, work.keys, work.known
+        robot, work.placed, pose, within, inverse_reach, model, work.pairs, work.keys, work.known
     )
     gap = smallest_gap(model, count, within)
     rank = 0
@@ -138,10 +138,10 @@ def _along_walls(scene, pose, inverse_reach, within, direction, slide, work):
             normals[rank, m] = model[k, GRADIENT + m]
         if _orthogonalise(normals, rank, normals[rank]) > _INDEPENDENT:
             rank += 1
-    for m in range(6):
+    for m in range(direction.shape[0]):
         slide[m] = direction[m] if m < 3 else 0.0
     if _orthogonalise(normals, rank, slide) <= _INDEPENDENT:
-        for m in range(6):
+        for m in range(direction.shape[0]):
             slide[m] = direction[m]
 
 
@@ -163,73 +163,71 @@ def _orthogonalise(rows, count, vector):
 
 
 @kernel
-def _next_pose(scene, here, size, direction, turns, within, wide, steps, work):
+def _next_pose(robot, here, size, direction, turns, within, wide, steps, work):
     """Write the next pose along a passage to ``work.next_pose``: (its gap, length of the step).
 
     It is centred in up to ``steps`` steps, across the translation where that is most of the way.
     """
-    reach = robot_reach(scene)
+    reach = reach_of(robot)
     inverse_reach = 1.0 / reach if turns else 0.0
-    ahead, pose, across = work.ahead, work.next_pose, work.across
-    for m in range(6):
+    ahead, pose, across = work.ahead, work.next_pose[: here.shape[0]], work.across
+    for m in range(direction.shape[0]):
         ahead[m] = size * direction[m]
         across[m] = direction[m] if m < 3 else 0.0
-    moved(here, ahead, inverse_reach, pose)
+    moved(robot, here, ahead, inverse_reach, pose)
     length = step_length(across)
-    for m in range(6):
+    for m in range(direction.shape[0]):
         across[m] = across[m] / length if length > _TRANSLATES else direction[m]
-    gap, _ = centre(scene, pose, across, turns, within, wide, _PRECISE, steps, work)
-    difference(here, pose, reach if turns else 0.0, ahead)
+    gap, _ = centre(robot, pose, across, turns, within, wide, _PRECISE, steps, work)
+    difference(robot, here, pose, reach if turns else 0.0, ahead)
     turned = math.sqrt(ahead[3] ** 2 + ahead[4] ** 2 + ahead[5] ** 2)
     if turned > 0.0 and turned <= 1.1 * SMALL_ROTATION * reach:
         # OMPL does not interpolate rotations that are so small: rather do not turn at all.
         for m in range(4):
             pose[3 + m] = here[3 + m]
-        gap, _ = centre(scene, pose, across, False, within, wide, _PRECISE, steps, work)
-        difference(here, pose, 0.0, ahead)
+        gap, _ = centre(robot, pose, across, False, within, wide, _PRECISE, steps, work)
+        difference(robot, here, pose, 0.0, ahead)
+    hold_other(robot, here, pose)
     return gap, step_length(ahead)
 
 
 @kernel
 def follow(
-    scene, progress, direction, turns, within, wide, longest, path, count, pairs, work, motion
+    robot, progress, direction, turns, within, wide, longest, path, count, pairs, work, motion
 ):
-    """Follow a passage from its pose ``path[count − 1]`` along ``direction`` (6,) for a while.
+    """Follow a passage from its pose ``path[count − 1]`` along ``direction`` for a while.
 
-    ``path`` (m, 7) receives poses joined by proved motions, until it is full, about ``pairs`` pairs
-    of bodies were looked at, or ``progress`` (PROGRESS,) says that the passage is OPEN (the
+    ``path`` (m, 7 + V) receives poses joined by proved motions, until it is full, about ``pairs``
+    pairs of bodies were looked at, or ``progress`` (PROGRESS,) says that the passage is OPEN (the
     smallest gap, looked at up to ``within``, is ``wide``) or BLOCKED (nothing more is proved, or
     longer than ``longest``).
     At first its state is NEW: then ``path[0]`` is moved to the narrowest place near it before
     anything is followed, and the passage is CLOSED if that leaves no gap. Returns the number of
     poses.
     """
-    reach = robot_reach(scene)
+    reach = reach_of(robot)
     inverse_reach = 1.0 / reach if turns else 0.0
-    workspace, placed, stack = motion
-    workspace[BUDGET] = _PROOFS
+    limit_proofs(robot, motion, _PROOFS)
     if progress[STATE] == NEW:
         progress[SIZE] = reach
-        _begin(scene, progress, direction, turns, within, wide, path, work)
+        _begin(robot, progress, direction, turns, within, wide, path, work)
         return count
-    ahead, next_pose, slide = work.ahead, work.next_pose, work.slide
+    ahead, next_pose, slide = work.ahead, work.next_pose[: path.shape[1]], work.slide
     until = work.pairs[0] + pairs
     while progress[STATE] == FOLLOWING and count < path.shape[0] and work.pairs[0] < until:
         size, here = progress[SIZE], path[count - 1]
         proved, gap, length = False, 0.0, 0.0
         straight = progress[BENT] <= 0.0
         if straight:
-            _along_walls(scene, here, inverse_reach, within, direction, slide, work)
+            _along_walls(robot, here, inverse_reach, within, direction, slide, work)
         for attempt in range(0 if straight else 1, 2):
             if proved:
                 continue
             steps, course = (0, slide) if attempt == 0 else (_CENTRING, direction)
-            gap, length = _next_pose(scene, here, size, course, turns, within, wide, steps, work)
+            gap, length = _next_pose(robot, here, size, course, turns, within, wide, steps, work)
             if gap > 0.0 and length < 2.0 * size:
-                proved = (
-                    prove_motion(scene, here, next_pose, scene[CLEARANCE], workspace, placed, stack)
-                    > 0
-                )
+                proved = prove_way(robot, here, next_pose, motion) > 0
+                work.pairs[0] += pairs_looked_at(robot)
             if attempt == 0 and not proved:
                 progress[BENT] = _BENT
         if not proved:
@@ -239,9 +237,9 @@ def follow(
             if progress[SIZE] < max(_SHORTEST * reach, 0.2 * progress[LAST_GAP]):
                 progress[STATE] = BLOCKED
             continue
-        for m in range(7):
+        for m in range(path.shape[1]):
             path[count, m] = next_pose[m]
-        for m in range(6):
+        for m in range(direction.shape[0]):
             direction[m] = ahead[m] / length
         count += 1
         progress[TRAVELLED] += length

@@ -14,11 +14,24 @@ from numba.core import types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from . import articulated_motion, articulated_validity, kinematics, motion, placement, validity
+from . import (
+    articulated_motion,
+    articulated_steps,
+    articulated_validity,
+    kinematics,
+    motion,
+    placement,
+    self_collision,
+    validity,
+)
 from .articulated_motion import MotionWorkspace, new_motion_workspace
 from .compile import kernel
-from .layout import CLEARANCE, new_placed, part_rows
+from .layout import CLEARANCE, PART_RADIUS, PART_REACH, new_placed, part_rows
 from .self_collision import new_body, new_order
+from .separation import CONVERGE, separation
+
+# About how many pairs a piece of an articulated motion looks at.
+_PAIRS_PER_PIECE = 8
 
 
 class ArticulatedModel(NamedTuple):
@@ -164,6 +177,191 @@ def _prove_way(model, first, last, workspaces):
     return prove_articulated
 
 
+def limit_proofs(model, workspaces, most):
+    """Let one motion take at most so many proofs before it is refused."""
+    raise NotImplementedError
+
+
+@overload(limit_proofs)
+def _limit_proofs(model, workspaces, most):
+    if _is_rigid(model):
+
+        def limit_rigid(model, workspaces, most):
+            workspaces[0][motion.BUDGET] = most
+
+        return limit_rigid
+
+    def limit_articulated(model, workspaces, most):
+        # A piece looks at all pairs.
+        model.work.pieces[1] = int(most) // _PAIRS_PER_PIECE
+
+    return limit_articulated
+
+
+def pairs_looked_at(model):
+    """About how many pairs of bodies the last proof looked at, beyond what is usual."""
+    raise NotImplementedError
+
+
+@overload(pairs_looked_at)
+def _pairs_looked_at(model):
+    if _is_rigid(model):
+        return lambda model: 0
+    return lambda model: model.work.pieces[0] * _PAIRS_PER_PIECE
+
+
+def step_size(model):
+    """How many numbers a step has (see contact_model)."""
+    raise NotImplementedError
+
+
+@overload(step_size, inline="always")
+def _step_size(model):
+    if _is_rigid(model):
+        return lambda model: 6
+    return lambda model: int(model.kinematics[kinematics.STEP_SIZE])
+
+
+def base_moves(model):
+    """1 if the robot's base can move, 0 if it is fixed."""
+    raise NotImplementedError
+
+
+@overload(base_moves, inline="always")
+def _base_moves(model):
+    if _is_rigid(model):
+        return lambda model: 1.0
+    return lambda model: model.kinematics[kinematics.BASE_MOVES]
+
+
+def reach_of(model):
+    """Largest distance of a point of the robot from its base."""
+    raise NotImplementedError
+
+
+@overload(reach_of)
+def _reach_of(model):
+    if _is_rigid(model):
+
+        def rigid_reach(model):
+            parts = part_rows(model)
+            reach = 0.0
+            for i in range(parts.shape[0]):
+                reach = max(reach, parts[i, PART_REACH])
+            return reach
+
+        return rigid_reach
+    return lambda model: model.kinematics[kinematics.ROBOT_REACH]
+
+
+def add_joints(model, i, sign, ux, uy, uz, px, py, pz, gradient):
+    """Add how the joints move the world's point p of part ``i`` along u to a step's gradient."""
+    raise NotImplementedError
+
+
+@overload(add_joints)
+def _add_joints(model, i, sign, ux, uy, uz, px, py, pz, gradient):
+    if _is_rigid(model):
+        return lambda model, i, sign, ux, uy, uz, px, py, pz, gradient: None
+
+    def add_articulated(model, i, sign, ux, uy, uz, px, py, pz, gradient):
+        articulated_steps.add_joint_gradient(
+            model.kinematics, model.work.frames, i, sign, ux, uy, uz, px, py, pz, gradient
+        )
+
+    return add_articulated
+
+
+def next_own_pair(model, placed, pair, within):
+    """The first pair of the robot's own parts after ``pair`` that may meet and is near, or −1.
+
+    Pairs are numbered i · parts + j, i < j; near are those whose boxes are within ``within``.
+    """
+    raise NotImplementedError
+
+
+@overload(next_own_pair)
+def _next_own_pair(model, placed, pair, within):
+    if _is_rigid(model):
+        return lambda model, placed, pair, within: -1
+
+    def next_articulated(model, placed, pair, within):
+        may_meet, count = kinematics.pair_matrix(model.kinematics), placed.shape[0]
+        for k in range(pair + 1, count * count):
+            i, j = k // count, k % count
+            if i < j and may_meet[i, j] != 0.0:
+                away = abs(placed[i, 0] - placed[j, 0]) - placed[i, 12] - placed[j, 12]
+                if away <= within and self_collision.boxes_meet(placed, i, j, within):
+                    return k
+        return -1
+
+    return next_articulated
+
+
+def own_gap(model, placed, i, j):
+    """Gap of two of the robot's own parts with its direction from ``i`` to ``j``."""
+    raise NotImplementedError
+
+
+@overload(own_gap)
+def _own_gap(model, placed, i, j):
+    if _is_rigid(model):
+        return lambda model, placed, i, j: (0.0, 1.0, 0.0, 0.0, 0.5)
+
+    def articulated_gap(model, placed, i, j):
+        parts = part_rows(model.scene)
+        owners = kinematics.owners_of(model.kinematics)
+        shapes = kinematics.shape_rows(model.kinematics)
+        frame = model.work.frames[int(owners[i])]
+        self_collision.as_body(shapes, i, frame, placed, model.body)
+        lam = parts[i, PART_RADIUS] / (parts[i, PART_RADIUS] + parts[j, PART_RADIUS])
+        return separation(model.body, 0, placed, j, lam, np.inf, CONVERGE)
+
+    return articulated_gap
+
+
+def move_other(model, pose, step, out):
+    """Write what of ``pose`` is not the base's, moved by ``step``, to ``out``."""
+    raise NotImplementedError
+
+
+@overload(move_other)
+def _move_other(model, pose, step, out):
+    if _is_rigid(model):
+        return lambda model, pose, step, out: None
+    return lambda model, pose, step, out: articulated_steps.move_joints(
+        model.kinematics, pose, step, out
+    )
+
+
+def other_difference(model, first, last, out):
+    """Write the step, but for the base's part, that moves ``first`` to ``last``."""
+    raise NotImplementedError
+
+
+@overload(other_difference)
+def _other_difference(model, first, last, out):
+    if _is_rigid(model):
+        return lambda model, first, last, out: None
+    return lambda model, first, last, out: articulated_steps.joint_difference(
+        model.kinematics, first, last, out
+    )
+
+
+def hold_other(model, first, last):
+    """Let what of ``last`` turns too little for OMPL, but for the base, stay as in ``first``."""
+    raise NotImplementedError
+
+
+@overload(hold_other)
+def _hold_other(model, first, last):
+    if _is_rigid(model):
+        return lambda model, first, last: None
+    return lambda model, first, last: articulated_steps.hold_small_turns(
+        model.kinematics, first, last
+    )
+
+
 @kernel
 def ways_are_free(model, first, last, counts):
     """:func:`prove_way` of every pair of rows (m, 7 or 7 + V)."""
@@ -187,3 +385,9 @@ def poses_are_free(model, poses, out):
     placed = new_placed(scene_of(model))
     for k in range(poses.shape[0]):
         out[k] = pose_is_free(model, poses[k], placed)
+
+
+@kernel
+def step_count(model):
+    """:func:`step_size`, for callers in Python."""
+    return step_size(model)

@@ -13,20 +13,20 @@ from .compile import inlined, kernel
 
 # Rows in use at most: as many as can be independent, the dimension of steps and one more, and
 # another that has come in before one of them leaves.
-MOST_ACTIVE = 8
+SPARE_ACTIVE = 2
 _ROUNDS = 40
 _RIDGE = 1e-13
 
 
 @inlined
-def _factorise(matrix, count, rows, active, size):
+def _factorise(matrix, count, rows, active, size, dimension):
     """Cholesky factor of s(∇g·∇g + 1) over the active rows, in the lower half of ``matrix``."""
     for a in range(count):
         for b in range(a + 1):
             # As the weights' sum is given, a constant changes nothing; without it, rows whose
             # gradients depend on each other would be singular.
             total = size
-            for m in range(6):
+            for m in range(dimension):
                 total += size * rows[active[a], 1 + m] * rows[active[b], 1 + m]
             if a == b:
                 total *= 1.0 + _RIDGE
@@ -54,20 +54,21 @@ def _solve(matrix, count, column):
 
 @kernel
 def minimise(rows, count, size, matrix, active, weights, step):
-    """Write the best ``step`` (6,); rows (count, ≥ 7) hold g and ∇g.
+    """Write the best ``step`` (d,); rows (count, ≥ 1 + d) hold g and ∇g.
 
-    ``active`` (MOST_ACTIVE + 1,) and ``weights`` (MOST_ACTIVE,) receive the rows in use, their
-    number last, and their weights λ. ``matrix`` (MOST_ACTIVE, MOST_ACTIVE + 2) is workspace.
+    ``active`` (most + 1,) and ``weights`` (most,), most = d + SPARE_ACTIVE, receive the rows in
+    use, their number last, and their weights λ. ``matrix`` (most, most + 2) is workspace.
+
     Returns the smallest of the linear functions at the step.
     """
-    used = 1
+    used, dimension, most_active = 1, step.shape[0], weights.shape[0]
     active[0], weights[0] = 0, 1.0
     for k in range(count):
         if rows[k, 0] < rows[active[0], 0]:
             active[0] = k
-    ones, linear = MOST_ACTIVE, MOST_ACTIVE + 1
+    ones, linear = most_active, most_active + 1
     for _ in range(_ROUNDS):
-        _factorise(matrix, used, rows, active, size)
+        _factorise(matrix, used, rows, active, size, dimension)
         first, second = 0.0, 0.0
         for a in range(used):
             matrix[a, ones], matrix[a, linear] = 1.0, -rows[active[a], 0]
@@ -89,23 +90,23 @@ def minimise(rows, count, size, matrix, active, weights, step):
             used -= 1
             active[leaving], weights[leaving] = active[used], weights[used]
             continue
-        for m in range(6):
+        for m in range(dimension):
             step[m] = 0.0
             for a in range(used):
                 step[m] += size * weights[a] * rows[active[a], 1 + m]
         lowest, entering, highest = math.inf, -1, -math.inf
         for k in range(count):
             value = rows[k, 0]
-            for m in range(6):
+            for m in range(dimension):
                 value += rows[k, 1 + m] * step[m]
             if value < lowest:
                 lowest, entering = value, k
         for a in range(used):
             value = rows[active[a], 0]
-            for m in range(6):
+            for m in range(dimension):
                 value += rows[active[a], 1 + m] * step[m]
             highest = max(highest, value)
-        if used == MOST_ACTIVE or highest - lowest <= 1e-11 * (
+        if used == most_active or highest - lowest <= 1e-11 * (
             abs(highest) + abs(lowest) + 1e-6 * size
         ):
             break
@@ -116,11 +117,11 @@ def minimise(rows, count, size, matrix, active, weights, step):
             break
         active[used], weights[used] = entering, 0.0
         used += 1
-    active[MOST_ACTIVE] = used
+    active[most_active] = used
     promised = math.inf
     for k in range(count):
         value = rows[k, 0]
-        for m in range(6):
+        for m in range(dimension):
             value += rows[k, 1 + m] * step[m]
         promised = min(promised, value)
     return promised

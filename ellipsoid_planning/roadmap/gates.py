@@ -14,6 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.kernels import centring, layout, placement, saddles
@@ -42,10 +43,15 @@ class Gate:
     normals: Array
 
 
+def only_translates(cspace: CSpace) -> bool:
+    """Whether the robot has but one shape and orientation."""
+    return not (cspace.rotates or isinstance(cspace, ArticulatedCSpace))
+
+
 def probe(cspace: CSpace) -> tuple[Array, Array]:
     """Part rows and placed rows of what gates are looked for with."""
     scene = cspace.scene
-    if not cspace.rotates:
+    if only_translates(cspace):
         placed = layout.new_placed(scene)
         pose = cspace.poses(np.zeros(cspace.dimension))[0]
         placement.place(scene, *pose, placed)

@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 
 import numpy as np
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import (
@@ -24,7 +25,10 @@ from ellipsoid_planning.kernels import (
     validity,
 )
 from ellipsoid_planning.kernels.compile import CACHE_FOLDER
+from ellipsoid_planning.kernels.roadmap_metric import turn_length
+from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
 from ellipsoid_planning.roadmap.gates import GateFinder, probe
+from ellipsoid_planning.roadmap.joint_layers import home_configuration, layer_metric
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.world import World
 
@@ -37,14 +41,18 @@ _LONGEST = 600.0
 
 def compile_passage_kernels(cspace: CSpace) -> None:
     """Call everything that looking for passages calls, without finding any."""
-    scene = cspace.scene
-    workspace = centring.new_workspace(scene)
-    pose = np.zeros((1, 7))
-    pose[0, 6] = 1.0
-    step, progress = np.zeros(6), np.zeros(passages.PROGRESS)
+    model = cspace.model
+    workspace = centring.new_workspace(model)
+    home = np.zeros(cspace.robot.configuration_size)
+    if isinstance(cspace, ArticulatedCSpace):
+        home = home_configuration(cspace.articulated)
+    elif cspace.dimension == 3 and cspace.rotates:
+        home[6] = 1.0
+    pose = cspace.poses(home)
+    step, progress = np.zeros(step_count(model)), np.zeros(passages.PROGRESS)
     progress[passages.STATE] = passages.BLOCKED
     passages.follow(
-        scene,
+        model,
         progress,
         step,
         cspace.rotates,
@@ -57,13 +65,14 @@ def compile_passage_kernels(cspace: CSpace) -> None:
         workspace,
         motion.motion_workspaces(),
     )
-    contact_model.samples_along(pose[0], step, 1.0, np.empty((1, 7)))
-    contact_model.difference(pose[0], pose[0], 1.0, step)
-    contact_model.moved(pose[0], step, 1.0, pose[0])
+    contact_model.samples_along(model, pose[0], step, 1.0, np.empty_like(pose))
+    contact_model.difference(model, pose[0], pose[0], 1.0, step)
+    contact_model.moved(model, pose[0], step, 1.0, pose[0])
     linear.rotation_matrix(0.0, 0.0, 0.0, 1.0)
-    validity.are_free(scene, pose, np.empty(1, dtype=np.bool_))
-    validity.configuration_is_free(scene, *pose[0])
-    GateFinder(cspace, *probe(cspace), 1.0, workspace).compile_kernels()
+    poses_are_free(model, pose, np.empty(1, dtype=np.bool_))
+    turn_length(layer_metric(cspace), pose[0, 3:], pose[0, 3:], 1.0)
+    validity.configuration_is_free(cspace.scene, *pose[0, :7])
+    GateFinder(cspace, *probe(cspace), 1.0, centring.new_workspace(cspace.scene)).compile_kernels()
 
 
 @contextmanager

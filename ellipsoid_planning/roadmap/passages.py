@@ -11,16 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import centring, motion, passages
+from ellipsoid_planning.kernels.roadmap_metric import turn_length
+from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.roadmap.joint_layers import layer_metric
 from ellipsoid_planning.roadmap.seeds import Seed, seeds_of_query
 
 Array = NDArray[np.float64]
 
-# In units of the robot's reach: how far around the robot bodies are looked for, which gap makes no
-# narrow place, at which gap a passage has opened (or if it is that wide itself, how many times as
-# wide), and how long it may be.
+# In units of the robot's size (for rigid ones their reach): how far around the robot bodies are
+# looked for, which gap makes no narrow place, at which gap a passage has opened (or if it is that
+# wide itself, how many times as wide), and how long it may be.
 _WITHIN = 0.5
 _NARROW = 0.36
 _WIDE = 0.25
@@ -46,7 +48,7 @@ _PAIRS_PER_PIECE = 150
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """Poses (m, 7) joined by proved motions, ``length`` long."""
+    """Poses (m, 7 + V) joined by proved motions, ``length`` long."""
 
     poses: Array
     length: float
@@ -75,8 +77,10 @@ class PassageFinder:
         self._credit = _FIRST_PAIRS
         self._tried_before = 0
         self._promising = False
-        self._kernel = (centring.new_workspace(cspace.scene), motion.motion_workspaces())
-        self._reach = float(centring.robot_reach(cspace.scene))
+        self._model = cspace.model
+        self._kernel = (centring.new_workspace(self._model), motion.motion_workspaces())
+        self._reach, self._size = cspace.reach, cspace.size
+        self._joints = layer_metric(cspace)
 
     @property
     def begun(self) -> bool:
@@ -88,13 +92,13 @@ class PassageFinder:
         self._work, self._begun = iter(()), False
 
     def begin(self, starts: Array, goals: Array) -> None:
-        """Look for what a query from ``starts`` (S, 7) to ``goals`` (G, 7) may need."""
+        """Look for what a query from ``starts`` (S, 7 + V) to ``goals`` (G, 7 + V) may need."""
         self._begun = True
         self._credit, self._tried_before = _FIRST_PAIRS, self.seeds_tried
         self._kernel[0].keys[:] = -1
-        if isinstance(self.cspace, ArticulatedCSpace):
-            return
-        self._work = self._explore(seeds_of_query(self.cspace, starts, goals, self._kernel[0]))
+        self._work = self._explore(
+            seeds_of_query(self.cspace, starts, goals, self._kernel[0].pairs)
+        )
 
     def advance(self, steps: int, should_stop: Callable[[], bool]) -> bool:
         """Do about as much work as ``steps`` steps of the search, or until a passage is found.
@@ -125,7 +129,7 @@ class PassageFinder:
                 yield from self._explore_seed(seed)
 
     def _explore_seed(self, seed: Seed) -> Iterator[None]:
-        middle = seed.pose.reshape(1, 7).copy()
+        middle = seed.pose[None].copy()
         if seed.centred:
             state = np.zeros(passages.PROGRESS)
             self._follow(state, seed.across.copy(), middle, 1, _NARROW)
@@ -138,13 +142,13 @@ class PassageFinder:
         self._promising = self.seeds_tried == self._tried_before + 1
         wide = _WIDE
         if seed.centred:
-            wide = max(_WIDE, _WIDER * float(state[passages.LAST_GAP]) / self._reach)
+            wide = max(_WIDE, _WIDER * float(state[passages.LAST_GAP]) / self._size)
         halves = []
         for sign in (1.0, -1.0) if seed.centred else (1.0,):
             state = np.zeros(passages.PROGRESS)
             state[[passages.STATE, passages.SIZE]] = passages.FOLLOWING, self._reach
             direction = sign * seed.across / np.linalg.norm(seed.across)
-            path, count = np.empty((_POSES, 7)), 1
+            path, count = np.empty((_POSES, len(seed.pose))), 1
             path[0] = middle[0]
             while state[passages.STATE] == passages.FOLLOWING:
                 if count == len(path):
@@ -159,16 +163,16 @@ class PassageFinder:
             yield
 
     def _follow(self, state: Array, direction: Array, path: Array, count: int, wide: float) -> int:
-        reach = self._reach
+        size = self._size
         return int(
             passages.follow(
-                self.cspace.scene,
+                self._model,
                 state,
                 direction,
                 self.cspace.rotates,
-                _WITHIN * reach,
-                wide * reach,
-                _LONGEST * reach,
+                _WITHIN * size,
+                wide * size,
+                _LONGEST * size,
                 path,
                 count,
                 _PAIRS_PER_CALL,
@@ -177,16 +181,15 @@ class PassageFinder:
         )
 
     def _known(self, pose: Array) -> bool:
-        """Whether a passage found so far leads through ``pose`` (7,), about."""
+        """Whether a passage found so far leads through ``pose`` (7 + V,), about."""
         for passage in self.found:
-            away = np.linalg.norm(passage.poses[:, :3] - pose[:3], axis=1)
-            turned = np.arccos(np.minimum(np.abs(passage.poses[:, 3:] @ pose[3:]), 1.0))
-            if np.min(away + 2.0 * self._reach * turned) < _SAME * self._reach:
-                return True
+            for known in passage.poses:
+                away = float(np.linalg.norm(known[:3] - pose[:3]))
+                away += turn_length(self._joints, known[3:], pose[3:], self._reach)
+                if away < _SAME * self._reach:
+                    return True
         return False
 
     def _length(self, poses: Array) -> float:
         """Length in OMPL's metric."""
-        moved = np.linalg.norm(poses[1:, :3] - poses[:-1, :3], axis=1)
-        cosines = np.abs(np.einsum("mk,mk->m", poses[1:, 3:], poses[:-1, 3:]))
-        return float(np.sum(moved) + np.sum(np.arccos(np.minimum(cosines, 1.0))))
+        return path_length(self.cspace.robot, self.cspace.configurations(poses))

@@ -9,11 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.fitting import narrowest_directions
 from ellipsoid_planning.cspace.poses import rotation_quaternion
 from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.geometry.rows import placed_row
 from ellipsoid_planning.kernels import centring, contact_model, layout, linear, validity
-from ellipsoid_planning.roadmap.gates import Gate, GateFinder, probe
+from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
+from ellipsoid_planning.roadmap.gates import Gate, GateFinder, only_translates, probe
+from ellipsoid_planning.roadmap.joint_layers import middle_of_joints
+from ellipsoid_planning.robots.articulated import FIXED_BASE
 from ellipsoid_planning.robots.rigid import RigidRobot
 
 Array = NDArray[np.float64]
@@ -32,7 +37,7 @@ _SPINS = (0.0, 0.5 * math.pi, 0.25 * math.pi, 0.75 * math.pi)
 
 @dataclass(frozen=True, eq=False)
 class Seed:
-    """A pose (7,) near a passage and a step (6,) along it (see kernels.contact_model).
+    """A pose (7 + V,) near a passage and a step along it (see kernels.contact_model).
 
     ``centred`` tells whether the pose is to be moved across the passage first, and the passage
     followed both ways.
@@ -44,12 +49,14 @@ class Seed:
 
 
 def seeds_of_query(
-    cspace: CSpace, starts: Array, goals: Array, workspace: centring.Workspace
+    cspace: CSpace, starts: Array, goals: Array, pairs: NDArray[np.int64]
 ) -> Iterator[Seed | None]:
-    """Seeds for queries from ``starts`` (S, 7) to ``goals`` (G, 7), the likeliest first.
+    """Seeds for queries from ``starts`` (S, 7 + V) to ``goals`` (G, 7 + V), the likeliest first.
 
-    Now and then None, when looking for the next one took a while.
+    Now and then None, when looking for the next one took a while. ``pairs`` (1,) counts the pairs
+    of bodies that were looked at.
     """
+    workspace = centring.new_workspace(cspace.scene)._replace(pairs=pairs)
     for first in starts:
         for last in goals:
             yield from _on_the_way(cspace, first, last)
@@ -61,19 +68,25 @@ def seeds_of_query(
             yield from _at_gates(cspace, first, last, workspace)
 
 
+def _step(cspace: CSpace, first: Array, last: Array) -> Array:
+    """The step from one pose to another (see kernels.contact_model)."""
+    model = cspace.model
+    step = np.zeros(step_count(model))
+    contact_model.difference(model, first, last, cspace.reach, step)
+    if not cspace.rotates:
+        step[3:6] = 0.0
+    return step
+
+
 def _on_the_way(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
     """The middles of the blocked stretches of the direct motion, then its ends."""
-    reach = centring.robot_reach(cspace.scene)
-    step = np.empty(6)
-    contact_model.difference(first, last, reach, step)
-    if not cspace.rotates:
-        step[3:] = 0.0
+    model, step = cspace.model, _step(cspace, first, last)
     if not step.any():
         return
-    poses = np.empty((_SAMPLES, 7))
-    contact_model.samples_along(first, step, 1.0 / reach, poses)
+    poses = np.repeat(first[None], _SAMPLES, axis=0)
+    contact_model.samples_along(model, first, step, 1.0 / cspace.reach, poses)
     free = np.empty(_SAMPLES, dtype=np.bool_)
-    validity.are_free(cspace.scene, poses, free)
+    poses_are_free(model, poses, free)
     edges = np.flatnonzero(np.diff(np.concatenate([[True], free, [True]]).astype(int)))
     for begin, end in edges.reshape(-1, 2):
         yield Seed(poses[(begin + end - 1) // 2], step)
@@ -86,34 +99,35 @@ def _turning(cspace: CSpace, first: Array, last: Array) -> Iterator[Seed]:
 
     Where an arena is hardly larger than the robot, turning is what is narrow.
     """
-    reach = centring.robot_reach(cspace.scene)
-    step = np.empty(6)
-    contact_model.difference(first, last, reach, step)
-    turn = float(np.linalg.norm(step[3:])) / reach
+    step = _step(cspace, first, last)
+    turn = float(np.linalg.norm(step[3:6])) / cspace.reach
     if not cspace.rotates or turn < _LEAST_TURN:
         return
     step[:3] = 0.0
     for arena in cspace.world.arenas:
         for way in (1.0, 1.0 - 2.0 * np.pi / turn):
-            pose = np.empty(7)
-            contact_model.moved(first, 0.5 * way * step, 1.0 / reach, pose)
+            pose, course = first.copy(), step.copy()
+            course[3:6] *= way
+            contact_model.moved(cspace.model, first, 0.5 * course, 1.0 / cspace.reach, pose)
             pose[:3] = 0.0
             pose[: cspace.dimension] = arena.centre
-            yield Seed(pose, way * step)
+            yield Seed(pose, course)
 
 
 def _at_gates(
     cspace: CSpace, first: Array, last: Array, workspace: centring.Workspace
 ) -> Iterator[Seed | None]:
     """Gates by the length of the way through them, each at one orientation after the other."""
-    reach = centring.robot_reach(cspace.scene)
-    widest = reach if cspace.rotates else _WIDEST * reach
+    if _is_fixed(cspace):
+        return
+    widest = _WIDEST * cspace.reach if only_translates(cspace) else cspace.reach
     finder = GateFinder(cspace, *probe(cspace), widest, workspace)
+    shapes = [(joints, _frozen(cspace, joints)) for joints in _shapes(cspace, first, last)]
     later: list[Iterator[Seed]] = []
     for gate in finder.gates(_bodies_near(cspace, first[:3], last[:3]), first[:3], last[:3]):
         yield None
         if gate is not None and _has_room(cspace, gate, first[3:]):
-            seeds = _gate_seeds(cspace, gate, first, last)
+            seeds = _gate_seeds(cspace, gate, first, last, shapes)
             yield next(seeds, None)
             later.append(seeds)
     while later:
@@ -142,7 +156,7 @@ def _bodies_near(cspace: CSpace, first: Array, last: Array) -> list[int]:
 def _has_room(cspace: CSpace, gate: Gate, orientation: Array) -> bool:
     """Whether the point of a gate is free: for the robot, or if it turns, for a point."""
     n = cspace.dimension
-    if not cspace.rotates:
+    if only_translates(cspace):
         return bool(validity.configuration_is_free(cspace.scene, *gate.point, *orientation))
     point = gate.point[:n]
     inside = gate.gap <= 0.0 or all(arena.contains(point) for arena in cspace.world.arenas)
@@ -162,27 +176,57 @@ def _along(gate: Gate, first: Array, last: Array, dimension: int) -> Array:
     return along / max(float(np.linalg.norm(along)), 1e-300)
 
 
-def _gate_seeds(cspace: CSpace, gate: Gate, first: Array, last: Array) -> Iterator[Seed]:
-    across = np.zeros(6)
+def _gate_seeds(
+    cspace: CSpace, gate: Gate, first: Array, last: Array, shapes: list[tuple[Array, RigidRobot]]
+) -> Iterator[Seed]:
+    across = np.zeros(step_count(cspace.model))
     across[:3] = _along(gate, first, last, cspace.dimension)
     if not across.any():
         return
-    if not cspace.rotates:
+    if only_translates(cspace):
         yield Seed(np.concatenate([gate.point, first[3:]]), across)
         return
-    for quaternion in (first[3:], last[3:], *_fitting_quaternions(cspace, gate.normals[0], across)):
-        rotation = np.array(linear.rotation_matrix(*quaternion)).reshape(3, 3)
-        base = gate.point - rotation @ _middle(cspace)
-        yield Seed(np.concatenate([base, quaternion]), across)
+    for joints, robot in shapes:
+        quaternions = [first[3:7], last[3:7]]
+        if cspace.rotates:
+            quaternions += _fitting_quaternions(robot, gate.normals[0], across)
+        for quaternion in quaternions:
+            rotation = np.array(linear.rotation_matrix(*quaternion)).reshape(3, 3)
+            base = gate.point - rotation @ _middle(robot)
+            yield Seed(np.concatenate([base, quaternion, joints]), across)
 
 
-def _fitting_quaternions(cspace: CSpace, normal: Array, across: Array) -> Iterator[Array]:
+def _shapes(cspace: CSpace, first: Array, last: Array) -> list[Array]:
+    """Joint values (V,) that the robot is tried at in a gate: those of the ends, and the middle."""
+    if not isinstance(cspace, ArticulatedCSpace):
+        return [first[7:]]
+    shapes = [middle_of_joints(cspace.articulated), first[7:], last[7:]]
+    return [row for k, row in enumerate(shapes) if not any((row == o).all() for o in shapes[:k])]
+
+
+def _frozen(cspace: CSpace, joints: Array) -> RigidRobot:
+    """The robot with its joints held at values (V,), as a rigid one in the base's frame."""
+    if not isinstance(cspace, ArticulatedCSpace):
+        return cspace.robot
+    row = np.concatenate([np.zeros(6), [1.0], joints])
+    robot = cspace.articulated
+    at_home = cspace.configurations(row[None])[0]
+    position, rotation = robot.pose(at_home)
+    home = (part.transform(rotation.T, -rotation.T @ position) for part in robot.bodies_at(at_home))
+    return RigidRobot(tuple(home))
+
+
+def _is_fixed(cspace: CSpace) -> bool:
+    return isinstance(cspace, ArticulatedCSpace) and cspace.articulated.base == FIXED_BASE
+
+
+def _fitting_quaternions(robot: RigidRobot, normal: Array, across: Array) -> Iterator[Array]:
     """Orientations at which the robot is narrowest along ``normal`` (3,), in space at some spins.
 
     Of the spins, those come first that point one of the robot's axes along ``across``.
     """
-    n = cspace.dimension
-    directions = narrowest_directions(cspace.robot)[:_FITTING]
+    n = robot.dimension
+    directions = narrowest_directions(robot)[:_FITTING]
     for spin in _SPINS if n == 3 else (0.0,):
         for v in directions:
             for sign in (1.0, -1.0):
@@ -190,7 +234,7 @@ def _fitting_quaternions(cspace: CSpace, normal: Array, across: Array) -> Iterat
                     yaw = math.atan2(normal[1], normal[0]) - math.atan2(sign * v[1], sign * v[0])
                     yield np.array([0.0, 0.0, math.sin(0.5 * yaw), math.cos(0.5 * yaw)])
                 else:
-                    yield _frame_quaternion(cspace.robot, sign * v, normal, across[:3], spin)
+                    yield _frame_quaternion(robot, sign * v, normal, across[:3], spin)
 
 
 def _frame_quaternion(
@@ -209,9 +253,8 @@ def _frame_quaternion(
     return rotation_quaternion(target @ own.T)
 
 
-def _middle(cspace: CSpace) -> Array:
+def _middle(robot: RigidRobot) -> Array:
     """The middle of the robot's box in its base frame (3,)."""
-    parts = layout.part_rows(cspace.scene)
-    extent = np.linalg.norm(parts[:, 3:12].reshape(-1, 3, 3), axis=2)
-    low, high = (parts[:, :3] - extent).min(axis=0), (parts[:, :3] + extent).max(axis=0)
+    rows = np.array([placed_row(part) for part in robot.parts])
+    low, high = (rows[:, :3] - rows[:, 12:]).min(axis=0), (rows[:, :3] + rows[:, 12:]).max(axis=0)
     return np.asarray(0.5 * (low + high))

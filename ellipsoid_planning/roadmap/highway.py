@@ -345,7 +345,7 @@ class HighwayRoadmap:
 
         For a planner made for this alone: it lays out the first level, and adds two ends to it.
         """
-        with compiling_aside():
+        with compiling_aside(isinstance(self.cspace, ArticulatedCSpace)):
             self._compile_search()
         compile_passage_kernels(self.cspace)
 

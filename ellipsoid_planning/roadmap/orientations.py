@@ -1,4 +1,4 @@
-"""The orientations of a roadmap's layers, and which of them are neighbours."""
+"""The orientations of a roadmap's layers."""
 
 from __future__ import annotations
 
@@ -71,21 +71,6 @@ def spread_orientations(dimension: int, count: int) -> Array:
     else:
         out = super_fibonacci(count)
     out.setflags(write=False)
-    return out
-
-
-def nearest(orientations: Array, targets: Array, count: int) -> NDArray[np.int64]:
-    """Indices (m, count) of the orientations nearest to each row of ``targets`` (m, 4).
-
-    Filled up with −1 where there are fewer; a target itself, if listed, is among them.
-    """
-    count_there = min(count, len(orientations))
-    out = np.full((len(targets), count), -1, dtype=np.int64)
-    for first in range(0, len(targets), 512):
-        rows = slice(first, first + 512)
-        closeness = np.abs(targets[rows] @ orientations.T)
-        order = np.argsort(-closeness, axis=1, kind="stable")[:, :count_there]
-        out[rows, :count_there] = order
     return out
 
 

@@ -14,6 +14,7 @@ from contextlib import contextmanager, suppress
 import numpy as np
 
 from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
+from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import (
@@ -29,12 +30,12 @@ from ellipsoid_planning.kernels.roadmap_metric import turn_length
 from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
 from ellipsoid_planning.roadmap.gates import GateFinder, probe
 from ellipsoid_planning.roadmap.joint_layers import home_configuration, layer_metric
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link, RigidRobot
 from ellipsoid_planning.world import World
 
 # Stands in the cache's folder while and after somebody compiles these kernels.
-_MARK = "passages"
-_PROGRAM = "from ellipsoid_planning.roadmap.passage_kernels import main; main()"
+_MARKS = {False: "passages", True: "passages-articulated"}
+_PROGRAM = "from ellipsoid_planning.roadmap.passage_kernels import main; main({})"
 # No compilation takes as long [s].
 _LONGEST = 600.0
 
@@ -76,16 +77,16 @@ def compile_passage_kernels(cspace: CSpace) -> None:
 
 
 @contextmanager
-def compiling_aside() -> Iterator[None]:
+def compiling_aside(articulated: bool) -> Iterator[None]:
     """Compile the kernels in a process of its own while the block runs, unless they are there.
 
     If no process can be started, nothing happens: they are compiled when they are called.
     """
     process = None
     with suppress(OSError):
-        (CACHE_FOLDER / _MARK).touch(exist_ok=False)
+        (CACHE_FOLDER / _MARKS[articulated]).touch(exist_ok=False)
         process = subprocess.Popen(  # noqa: S603 (our own program)
-            [sys.executable, "-c", _PROGRAM],
+            [sys.executable, "-c", _PROGRAM.format(articulated)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -97,12 +98,16 @@ def compiling_aside() -> Iterator[None]:
     except BaseException:
         if process is not None:
             process.kill()
-            (CACHE_FOLDER / _MARK).unlink(missing_ok=True)
+            (CACHE_FOLDER / _MARKS[articulated]).unlink(missing_ok=True)
         raise
 
 
-def main() -> None:
+def main(articulated: bool) -> None:
     """What the process does: compile for a scene of the simplest kind."""
     ball = Ellipsoid.from_semi_axes([1.0, 1.0, 1.0])
-    robot, world = RigidRobot((ball,)), World(np.full(3, -9.0), np.full(3, 9.0), (ball, ball))
-    compile_passage_kernels(CSpace(world, robot))
+    world = World(np.full(3, -9.0), np.full(3, 9.0), (ball, ball))
+    robot: RigidRobot | ArticulatedRobot = RigidRobot((ball,))
+    if articulated:
+        joint = Joint.of("joint", "one", "other", "continuous", [3.0, 0.0, 0.0])
+        robot = ArticulatedRobot((Link("one", (ball,)), Link("other", (ball,))), (joint,))
+    compile_passage_kernels(cspace_of(world, robot))

@@ -32,7 +32,7 @@ def memory():
 def modelled(scene, pose, within, *, clearance=0.0, turns=True, known=None):
     """Rows (k, 7) of the kernel's model, gap and gradient, the smallest gap first."""
     packed = space_of(scene, clearance).scene
-    model = np.full((model_kernel.CAPACITY, model_kernel.MODEL), np.nan)
+    model = np.full((model_kernel.CAPACITY, model_kernel.MODEL + 6), np.nan)
     work = np.zeros(1, dtype=np.int64)
     inverse = 1.0 / reach(scene) if turns else 0.0
     before = pose.copy()
@@ -308,7 +308,7 @@ def test_pairs_beyond_within_are_absent_and_far_ones_cost_nothing(n):
         gaps = np.sort(obstacle_gaps(scene, pose[None]).ravel())
         np.testing.assert_allclose(rows[:, 0], gaps[gaps < within], atol=1e-9)
     packed, work = space_of(crowded).scene, np.zeros(1, dtype=np.int64)
-    model = np.empty((model_kernel.CAPACITY, model_kernel.MODEL))
+    model = np.empty((model_kernel.CAPACITY, model_kernel.MODEL + 6))
     model_kernel.contact_model(
         packed, layout.new_placed(packed), pose, 0.5, 1.0, model, work, *memory()
     )
@@ -317,15 +317,16 @@ def test_pairs_beyond_within_are_absent_and_far_ones_cost_nothing(n):
 
 def test_steps_move_poses_as_they_say_and_back():
     rng = np.random.default_rng(10)
+    packed = np.empty(0)  # a rigid robot's steps depend on nothing else
     pose = np.append(rng.normal(size=3), rotation_quaternion(rng))
     for size in (1e-14, 1e-9, 1e-4, 1.0, 3.0):
         step = size * rng.normal(size=6)
         out, back = np.empty(7), np.empty(6)
-        model_kernel.moved(pose, step, 1 / 1.7, out)
+        model_kernel.moved(packed, pose, step, 1 / 1.7, out)
         expected = stepped(pose, step[None], 1.7)[0]
         expected[3:] *= np.sign(expected[3:] @ out[3:])
         np.testing.assert_allclose(out, expected, atol=1e-14)
-        model_kernel.difference(pose, out, 1.7, back)
+        model_kernel.difference(packed, pose, out, 1.7, back)
         shortest = Rotation.from_rotvec(step[3:] / 1.7).as_rotvec() * 1.7
         np.testing.assert_allclose(back, np.append(step[:3], shortest), atol=1e-14 + 1e-12 * size)
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from ellipsoid_planning.kernels.simplex import MOST_ACTIVE
+from ellipsoid_planning.kernels.simplex import SPARE_ACTIVE
 from ellipsoid_planning.kernels.simplex import minimise as kernel
+
+MOST_ACTIVE = 6 + SPARE_ACTIVE
 
 
 def minimised(rows, size):

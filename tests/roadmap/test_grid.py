@@ -6,9 +6,12 @@ import pytest
 from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.kernels.grid import UNKNOWN
+from ellipsoid_planning.kernels.roadmap_metric import METRIC
 from ellipsoid_planning.roadmap.grid import QUERY_ROOM, SPARE_ROWS, Grid, grid_columns, swept_box
 from ellipsoid_planning.roadmap.orientations import spread_orientations
 from ellipsoid_planning.world import World
+
+NO_JOINTS = np.empty((0, METRIC))
 
 
 def world(n=3, arenas=()):
@@ -17,7 +20,7 @@ def world(n=3, arenas=()):
 
 def grid(lines=6, layers=60, joined=12):
     columns, neighbours = grid_columns(world(), 2, lines)
-    return Grid(columns, neighbours, spread_orientations(3, layers), joined)
+    return Grid(columns, neighbours, spread_orientations(3, layers), joined, NO_JOINTS, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ellipsoid_planning.kernels.grid import UNKNOWN, between, find_nearest
+from ellipsoid_planning.kernels.roadmap_metric import METRIC
 from ellipsoid_planning.roadmap.orientations import (
     headings,
     icosahedral_rotations,
-    nearest,
     random_turn,
     spread_orientations,
     super_fibonacci,
@@ -81,28 +81,25 @@ def test_a_random_turn_keeps_all_angles(dimension):
         np.testing.assert_allclose(after[:, :2], 0.0, atol=1e-15)
 
 
-def test_nearest_agrees_with_the_kernel_and_with_brute_force():
+NO_JOINTS = np.empty((0, METRIC))
+
+
+def test_nearest_layers_agree_with_brute_force():
     points = super_fibonacci(80)
     rows = np.full((80, 12), -1, dtype=np.int64)
     rows[:, 0] = UNKNOWN
     for layer in range(80):
-        find_nearest(points, rows, layer, 80, 12)
+        find_nearest(points, NO_JOINTS, rows, layer, 80, 12, 1.0)
     away = angles(points, points)
     np.fill_diagonal(away, np.inf)
     expected = np.sort(away, axis=1)[:, :12]
     np.testing.assert_allclose(np.take_along_axis(away, rows, axis=1), expected, atol=1e-7)
-    table = nearest(points, points, 13)
-    np.testing.assert_array_equal(table[:, 0], np.arange(80))
-    np.testing.assert_allclose(np.take_along_axis(away, table[:, 1:], axis=1), expected, atol=1e-7)
 
 
 def test_few_orientations_leave_places_empty():
     points = super_fibonacci(3)
-    table = nearest(points, points, 5)
-    assert np.all(table[:, 3:] == -1)
-    assert np.all(np.sort(table[:, :3], axis=1) == [0, 1, 2])
     rows = np.full((3, 5), UNKNOWN, dtype=np.int64)
-    find_nearest(points, rows, 1, 3, 5)
+    find_nearest(points, NO_JOINTS, rows, 1, 3, 5, 1.0)
     assert sorted(rows[1]) == [-1, -1, -1, 0, 2]
 
 

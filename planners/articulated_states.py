@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +11,18 @@ from ompl import base as ob
 
 from ellipsoid_planning.cspace.poses import rotation_quaternion
 from ellipsoid_planning.kernels import articulated_states as states
+from ellipsoid_planning.kernels import safety_table
 from ellipsoid_planning.robots.articulated import FIXED_BASE, FREE_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.joint import BALL, CONTINUOUS
+from ellipsoid_planning.safety.planning import as_articulated
 
 from .bindings import StateValues
 from .spaces import state_space
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
+    from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.safety.tabulated import TabulatedSafety
 
 
 def state_form(robot: ArticulatedRobot) -> NDArray[np.float64]:
@@ -56,8 +60,22 @@ def _base_pose(robot: ArticulatedRobot) -> list[float]:
 def articulated_state_check(cspace: ArticulatedCSpace) -> Callable[[ob.State], bool]:
     """From a state to whether it is proved free."""
     scene, kinematics, form = cspace.scene, cspace.kinematics, state_form(cspace.robot)
+    return values_check(cspace, states.state_is_free, (scene, kinematics, form))
+
+
+def tabulated_state_check(safety: TabulatedSafety) -> Callable[[ob.State], bool]:
+    """From a state to whether it is proved safe, by tables where they tell."""
+    arrays = (safety.cspace.scene, safety.kinematics, safety.book, safety.offsets, safety.intervals)
+    form = state_form(as_articulated(safety.cspace))
+    return values_check(safety.cspace, safety_table.tabulated_state_is_free, (*arrays, form))
+
+
+def values_check(
+    cspace: CSpace, is_free: Callable[..., bool], arguments: tuple[Any, ...]
+) -> Callable[[ob.State], bool]:
+    """From a state to what ``is_free`` says of ``arguments`` and then its values (1, d)."""
     space, size = state_space(cspace), cspace.robot.configuration_size
-    serialize, is_free = space.serialize, states.state_is_free
+    serialize = space.serialize
     # Every call takes a buffer for itself, so that calls from several threads are safe.
     spare = [StateValues(space, 1, size)]
 
@@ -67,7 +85,7 @@ def articulated_state_check(cspace: ArticulatedCSpace) -> Callable[[ob.State], b
         except IndexError:
             buffer = StateValues(space, 1, size)
         serialize(buffer.places[0], state)
-        free: bool = is_free(scene, kinematics, form, buffer.values)
+        free = is_free(*arguments, buffer.values)
         spare.append(buffer)
         return free
 

@@ -20,7 +20,7 @@ from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from . import bindings
 from .certify import is_certified
 from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
-from .setup import CHECKERS, Checker, simple_setup
+from .setup import CHECKERS, PLUGIN_CHECKERS, Checker, simple_setup
 from .spaces import state_access, write_configuration
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def checked_request(
     entry = find_planner(own_name if planner is None else planner)
     if checker not in CHECKERS:
         raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
-    if entry.needs_plugin and checker != "plugin":
+    if entry.needs_plugin and checker not in PLUGIN_CHECKERS:
         raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
     if not time_limit > 0.0:
         raise PlannerError(f"time limit: expected a positive number of seconds, got {time_limit!r}")

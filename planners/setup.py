@@ -13,14 +13,16 @@ from .bindings import set_seed
 from .motion import CertifiedMotionValidator
 from .sampler import install_free_interval_sampler
 from .spaces import check_space, state_space, write_configuration
-from .validity import EllipsoidValidityChecker
+from .validity import EllipsoidValidityChecker, TabulatedValidityChecker
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
     from ellipsoid_planning.scenario import Scenario
 
-Checker = Literal["plugin", "fcl"]
-CHECKERS: tuple[Checker, ...] = ("plugin", "fcl")
+Checker = Literal["plugin", "tabulated", "fcl"]
+CHECKERS: tuple[Checker, ...] = ("plugin", "tabulated", "fcl")
+PLUGIN_CHECKERS: tuple[Checker, ...] = ("plugin", "tabulated")
+"""Those with certified motions; planners that need the plug-in work with them."""
 
 
 def install(
@@ -36,20 +38,22 @@ def install(
         si: over the plain OMPL space of the robot (see `planners.spaces.state_space`), not set up.
         cspace: of a world and a robot; no file is needed.
         checker: "plugin" for exact validity, certified motions and collision-free sampling;
-            "fcl" for python-fcl and discrete motions.
+            "tabulated" for the same with states looked up in tables, which are kept in the
+            user's cache and made first if need be; "fcl" for python-fcl and discrete motions.
         resolution: for "fcl" alone, distance of the checked states along a motion as a fraction
             of the space's extent; OMPL's default, 0.01, if None.
-        uniform_sampling: for "plugin" alone, draw valid states uniformly instead of favouring
+        uniform_sampling: not for "fcl": draw valid states uniformly instead of favouring
             narrow places.
 
     Raises:
         PlannerError: unknown checker, bad resolution, or a space that does not fit ``cspace``.
+        TableError: a table cannot be made, kept, or read.
     """
-    if checker == "plugin":
+    if checker in PLUGIN_CHECKERS:
         if resolution is not None:
             raise PlannerError("resolution: certified motions have none; use it with checker 'fcl'")
         check_space(si.getStateSpace(), cspace)
-        si.setStateValidityChecker(EllipsoidValidityChecker(si, cspace))
+        si.setStateValidityChecker(_plugin_checker(si, cspace, checker))
         si.setMotionValidator(CertifiedMotionValidator(si, cspace))
         install_free_interval_sampler(si, cspace, uniform_sampling)
     elif checker == "fcl":
@@ -59,6 +63,16 @@ def install(
         check_motions_discretely(si, RESOLUTION if resolution is None else resolution)
     else:
         raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
+
+
+def _plugin_checker(
+    si: ob.SpaceInformation, cspace: CSpace, checker: Checker
+) -> EllipsoidValidityChecker:
+    if checker == "plugin":
+        return EllipsoidValidityChecker(si, cspace)
+    from ellipsoid_planning.safety.tabulated import TabulatedSafety
+
+    return TabulatedValidityChecker(si, TabulatedSafety(cspace))
 
 
 def simple_setup(
@@ -73,7 +87,7 @@ def simple_setup(
 
     Args:
         scenario: what to plan for; its goal is an exact goal state.
-        checker: "plugin" or "fcl", see `install`.
+        checker: "plugin", "tabulated" or "fcl", see `install`.
         seed: seeds OMPL's random numbers before anything random is made, unless None.
         resolution: see `install`.
         uniform_sampling: see `install`.

@@ -63,7 +63,8 @@ def plan(
         scenario: what to plan for.
         planner: a name from `planners.registry.planner_names`; the scenario's own planner if
             None, HighwayRoadmap if it names none.
-        checker: "plugin" (exact, certified) or "fcl" (python-fcl, discrete motions).
+        checker: "plugin" (exact, certified), "tabulated" (the same with states looked up in
+            tables) or "fcl" (python-fcl, discrete motions).
         time_limit: for the planner alone [s].
         seed: makes the run repeat exactly with most planners; None for a different run each time.
         simplify: shorten the path with OMPL's simplification, under the same checker.

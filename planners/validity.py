@@ -11,11 +11,12 @@ from ompl import base as ob
 from ellipsoid_planning.kernels.articulated_states import UNIT_TOLERANCE
 from ellipsoid_planning.kernels.validity import configuration_is_free, planar_is_free
 
-from .articulated_states import articulated_state_check
+from .articulated_states import articulated_state_check, tabulated_state_check
 from .spaces import check_space, fixed_quaternion, is_articulated, read_configuration
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.safety.tabulated import TabulatedSafety
 
 StateCheck = Callable[[ob.State], bool]
 
@@ -49,6 +50,24 @@ class EllipsoidValidityChecker(ob.StateValidityChecker):
     def clearance(self, state: ob.State) -> float:
         """Proved lower bound of the distance to obstacles and arenas; negative: penetration."""
         return float(self.cspace.clearance(read_configuration(state, self.cspace)))
+
+
+class TabulatedValidityChecker(EllipsoidValidityChecker):
+    """The same answers from a tabulated safety function (thesis 6.4).
+
+    Attributes:
+        safety: the safety function.
+    """
+
+    def __init__(self, si: ob.SpaceInformation, safety: TabulatedSafety) -> None:
+        """Create a checker for the states of ``si``, which is not kept.
+
+        Raises:
+            PlannerError: the space of ``si`` does not fit the C-space of ``safety``.
+        """
+        super().__init__(si, safety.cspace)
+        self.safety = safety
+        self._check = tabulated_state_check(safety)
 
 
 def state_check(cspace: CSpace) -> StateCheck:

@@ -16,6 +16,7 @@ kernels.kinematics, rows of ``TABLE`` numbers for the tables, then the parts of 
 ``offsets[FIRST + k]`` on.
 """
 
+from .articulated_states import is_well_formed, row_of_state
 from .compile import inlined, kernel
 from .kinematics import body_frames, new_frames, owners_of, place_on_frames, within_limits
 from .layout import new_placed, part_rows
@@ -236,6 +237,15 @@ def tabulated_is_free(scene, kinematics, book, offsets, intervals, row):
         scene, kinematics, book, offsets, intervals, row,
         new_frames(kinematics), new_placed(scene), new_order(kinematics), new_body(),
     )  # fmt: skip
+
+
+@kernel
+def tabulated_state_is_free(scene, kinematics, book, offsets, intervals, form, states):
+    """Whether a state (1, d) is well formed and safe (see kernels.articulated_states)."""
+    if not is_well_formed(form, states[0]):
+        return False
+    row = row_of_state(form, states[0])
+    return tabulated_is_free(scene, kinematics, book, offsets, intervals, row)
 
 
 @kernel

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ellipsoid_planning.errors import PlannerError
 from planners.registry import PlannerEntry, find_planner
-from planners.setup import CHECKERS, Checker
+from planners.setup import CHECKERS, PLUGIN_CHECKERS, Checker
 
 DEFAULT_PLANNERS = ("HighwayRoadmap", "PRM", "RRT", "RRTConnect")
 
@@ -18,7 +18,7 @@ class Contender:
 
     Attributes:
         planner: a name for `planners.registry.find_planner`.
-        checker: "plugin" or "fcl".
+        checker: "plugin", "tabulated" or "fcl".
         label: the planner, with the checker where that planner takes part with both.
     """
 
@@ -49,7 +49,7 @@ def line_up(planners: Sequence[str], checkers: Sequence[str]) -> Line:
     notes: list[str] = []
     for name in planners:
         entry = find_planner(name)
-        own = [checker for checker in known if checker == "plugin" or not entry.needs_plugin]
+        own = [known_ for known_ in known if known_ in PLUGIN_CHECKERS or not entry.needs_plugin]
         if not own:
             raise PlannerError(
                 f"{entry.name} works with the plug-in checker only; "

@@ -49,7 +49,7 @@ class RunTask:
         problem: name of the problem.
         scenario: the scenario of this run in its file format.
         planner: a name for `planners.registry.find_planner`.
-        checker: "plugin" or "fcl".
+        checker: "plugin", "tabulated" or "fcl".
         label: planner, and checker where it is needed to tell contenders apart.
         run: number of the run, from 0.
         seed: of everything random.

@@ -35,7 +35,10 @@ def benchmark(
     ] = "HighwayRoadmap,PRM,RRT,RRTConnect",
     checkers: Annotated[
         str,
-        typer.Option(metavar="NAME,...", help="plugin (exact, certified), fcl (at a resolution)."),
+        typer.Option(
+            metavar="NAME,...",
+            help="plugin (exact, certified), tabulated (the same, by tables), fcl (by resolution).",
+        ),
     ] = "plugin,fcl",
     runs: Annotated[int, typer.Option(metavar="N", help="Of each planner on each scenario.")] = 10,
     time_limit: Annotated[

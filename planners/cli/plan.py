@@ -12,6 +12,7 @@ import typer
 
 from planners.cli.command_group import NO_PATH, SOLVED
 from planners.cli.outputs import check_outputs, write_csv
+from planners.cli.safety_tables import make_tables
 from planners.cli.settings import planner_parameters
 from planners.cli.terminal import result_console, say, working, working_with_kernels
 
@@ -28,6 +29,7 @@ class CheckerName(str, Enum):
     """The collision checkers, as the command line offers them."""
 
     plugin = "plugin"
+    tabulated = "tabulated"
     fcl = "fcl"
 
 
@@ -45,7 +47,10 @@ def plan(
     ] = None,
     checker: Annotated[
         CheckerName,
-        typer.Option(help="Exact, certified checks, or python-fcl at a resolution."),
+        typer.Option(
+            help="Exact, certified checks, the same with states looked up in tables, or "
+            "python-fcl at a resolution."
+        ),
     ] = CheckerName.plugin,
     time_limit: Annotated[float, typer.Option(help="For the planner alone, in seconds.")] = 10.0,
     anytime: Annotated[
@@ -99,6 +104,8 @@ def plan(
     problem = _checked_scenario(scenario, planner, checker.value, parameters, roadmap)
     from planners import solve
 
+    if checker is CheckerName.tabulated:
+        make_tables(problem)
     with working(f"Planning {problem.name}, for {time_limit:g} s at most"):
         result = solve.plan(
             problem,
@@ -160,7 +167,7 @@ def _check_planner(
         if planner is not None:
             raise
         raise scenario.origin.error(("planner", "name"), str(error)) from None
-    if entry.needs_plugin and checker != CheckerName.plugin.value:
+    if entry.needs_plugin and checker == CheckerName.fcl.value:
         raise PlannerError(
             f"{entry.name} works with the plug-in checker only; leave out --checker {checker}, "
             "or choose an OMPL planner with --planner"

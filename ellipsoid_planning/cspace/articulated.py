@@ -46,7 +46,14 @@ class ArticulatedCSpace(CSpace):
     and inside the arenas (at the clearance), and no part meets another (whatever the clearance)
     but those of neighbouring links and of ignored pairs. What is called valid is proved so; see
     CSpace for what may be refused. The rounding of forward kinematics adds a third of that for
-    each joint.
+    each joint. Motions are also refused
+
+    - that keep a gap of less than about 1e-9 of the size all along while they turn: they would
+      take more than 1e5 pieces (a gap that small in passing takes some tens),
+    - with half turns of more than one joint or base, or with several rotations in space of less
+      than 2e-4 rad unless OMPL surely holds each of them (below 6e-5 rad).
+
+    A motion that is proved is so backwards, too.
 
     Attributes:
         kinematics: the packed array that kernels read beside ``scene`` (kernels.kinematics).

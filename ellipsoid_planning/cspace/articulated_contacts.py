@@ -11,7 +11,7 @@ from ellipsoid_planning.cspace.contacts import Contact
 from ellipsoid_planning.kernels import kinematics as tables
 from ellipsoid_planning.kernels import layout, self_collision, separation
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
-from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
+from ellipsoid_planning.robots.joint import PRISMATIC
 
 Array = NDArray[np.float64]
 
@@ -22,12 +22,12 @@ def limit_contacts(robot: ArticulatedRobot, configuration: Array) -> list[Contac
     """Joints whose values in a configuration (d,) are out of their limits."""
     contacts = []
     for joint in robot.moving_joints:
-        if joint.type not in LIMITED:
+        if joint.value_count != 1:
             continue
         value = float(configuration[robot.joint_slices[joint.name]][0])
         depth = max(joint.lower - value, value - joint.upper)
-        if depth > LIMIT_TOLERANCE:
-            scale, unit = (math.degrees(1.0), " deg") if joint.type == REVOLUTE else (1.0, "")
+        if not depth <= LIMIT_TOLERANCE:
+            scale, unit = (1.0, "") if joint.type == PRISMATIC else (math.degrees(1.0), " deg")
             text = (
                 f"joint {joint.name!r} = {value * scale:g}{unit} is out of its limits "
                 f"[{joint.lower * scale:g}, {joint.upper * scale:g}]"

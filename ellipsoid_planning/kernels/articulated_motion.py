@@ -121,7 +121,7 @@ def new_motion_workspace(scene, kinematics):
         new_placed(scene),
         np.empty((parts, PLACED)),
         np.empty((parts, PLACED)),
-        np.empty((_DEPTH, parts), dtype=np.bool_),
+        np.empty((_DEPTH + 1, parts), dtype=np.bool_),
         np.empty((_DEPTH, 2)),
         np.arange(parts),
         np.empty((1, BODY)),
@@ -297,7 +297,7 @@ def _self_piece(scene, kinematics, work, level, half):
                 c = PLACED_CENTRE + k
                 placed[i, PLACED_EXTENT + k] = reach + abs(after[i, c] - placed[i, c])
     sort_along_x(placed, work.order)
-    again = left[level + 1] if level + 1 < left.shape[0] else left[level]
+    again = left[level + 1]
     for i in range(count):
         again[i] = False
     for a in range(count):
@@ -401,19 +401,32 @@ def _prove_rates(scene, kinematics, work, clearance):
 
 @kernel
 def _prove_small(scene, kinematics, first, last, clearance, work):
-    """Prove what else OMPL may do with tiny rotations: hold them until the end, then jump."""
-    set_rates(scene, kinematics, first, last, work.rates)
-    for k in range(first.shape[0]):
-        work.start[k] = first[k]
-    keep_rates(kinematics, False, work.rates)
-    total = _prove_rates(scene, kinematics, work, clearance)
-    if total < 0:
-        return total
-    row_at(kinematics, first, work.rates, 1.0, work.start)
-    set_rates(scene, kinematics, first, last, work.rates)
-    keep_rates(kinematics, True, work.rates)
-    count = _prove_rates(scene, kinematics, work, clearance)
-    return total + count if count > 0 else count - total
+    """Prove what else OMPL may do with tiny rotations: hold them until the end, then jump.
+
+    They are held at the first orientations or, as edges are used backwards, too, at the last
+    ones. What turns by half a turn meanwhile does so both ways round.
+    """
+    total = 0
+    for held in range(2):
+        for part in range(3):
+            for k in range(first.shape[0]):
+                work.start[k] = first[k]
+            set_rates(scene, kinematics, first, last, work.rates)
+            # In the first two parts the tiny rotations are held; the third is their jump, where
+            # everything else has come to its end, or has not begun.
+            jumps = part == 2
+            if (held == 1) != jumps:
+                keep_rates(kinematics, not jumps, work.rates)
+                row_at(kinematics, first, work.rates, 1.0, work.start)
+                set_rates(scene, kinematics, first, last, work.rates)
+            keep_rates(kinematics, jumps, work.rates)
+            if part == 1 and turn_other_way(kinematics, work.rates) == 0:
+                continue
+            count = _prove_rates(scene, kinematics, work, clearance)
+            if count < 0:
+                return count - total
+            total += count
+    return total
 
 
 @kernel

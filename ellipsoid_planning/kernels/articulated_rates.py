@@ -22,8 +22,10 @@ from .layout import DIMENSION
 from .linear import norm, product
 from .motion import SMALL_ROTATION
 
-# Below this rotation OMPL surely keeps the first orientation until the end.
+# Below this rotation OMPL surely keeps the first orientation until the end, if the squares of both
+# quaternions are 1 to within _UNIT: their product then exceeds 1 - 4.5e-10 - 5e-10.
 HELD_ROTATION = 6e-5
+_UNIT = 5e-10
 # From this turn on rounding may decide which way OMPL turns.
 _HALF_TURN = math.pi - 1e-8
 # Columns of the bounds on a body's motion: angular rate (signed in the plane), speed and
@@ -44,10 +46,23 @@ def _rotation_rate(first, last, v, rates, at):
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     sine = norm(x, y, z)
+    if sine <= 1e-15 * (sine + w):  # quaternions have any length
+        rates[at], rates[at + 1], rates[at + 2] = 0.0, 0.0, 0.0
+        return 0.0
     angle = 2.0 * math.atan2(sine, w)
-    scale = 0.0 if sine <= 1e-15 else angle / sine
+    scale = angle / sine
     rates[at], rates[at + 1], rates[at + 2] = scale * x, scale * y, scale * z
-    return 0.0 if sine <= 1e-15 else angle
+    return angle
+
+
+@kernel
+def _is_surely_held(first, last, v, angle):
+    """Whether OMPL surely keeps the first orientation: it depends on the lengths, too."""
+    unit = True
+    for row in (first, last):
+        square = row[v] ** 2 + row[v + 1] ** 2 + row[v + 2] ** 2 + row[v + 3] ** 2
+        unit = unit and abs(square - 1.0) <= _UNIT
+    return unit and angle <= HELD_ROTATION
 
 
 @kernel
@@ -66,7 +81,7 @@ def set_rates(scene, kinematics, first, last, rates):
     ties += norm(rates[3], rates[4], rates[5]) > _HALF_TURN
     if scene[DIMENSION] == 3.0 and 0.0 < angle < SMALL_ROTATION:
         small += 1
-        unsure += angle > HELD_ROTATION
+        unsure += not _is_surely_held(first, last, 3, angle)
     for j in range(joints.shape[0]):
         v, kind = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND])
         if kind == BALL:
@@ -75,7 +90,7 @@ def set_rates(scene, kinematics, first, last, rates):
             ties += norm(rates[v], rates[v + 1], rates[v + 2]) > _HALF_TURN
             if 0.0 < angle < SMALL_ROTATION:
                 small += 1
-                unsure += angle > HELD_ROTATION
+                unsure += not _is_surely_held(first, last, v, angle)
             continue
         rates[v] = last[v] - first[v]
         if kind == CONTINUOUS:

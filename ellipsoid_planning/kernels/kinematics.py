@@ -23,6 +23,7 @@ import numpy as np
 from .compile import inlined, kernel
 from .linear import cross, product, rotation_matrix
 from .placement import place_part
+from .validity import is_rotation
 
 # Header
 JOINT_COUNT = 0
@@ -260,8 +261,7 @@ def within_limits(kinematics, row):
     for j in range(joints.shape[0]):
         v = int(joints[j, JOINT_VALUE])
         if int(joints[j, JOINT_KIND]) == BALL:
-            square = row[v] ** 2 + row[v + 1] ** 2 + row[v + 2] ** 2 + row[v + 3] ** 2
-            if not (square > 0.0 and square < math.inf):
+            if not is_rotation(row[v], row[v + 1], row[v + 2], row[v + 3]):
                 return False
         elif not (joints[j, JOINT_LOW] - 1e-9 <= row[v] <= joints[j, JOINT_HIGH] + 1e-9):
             return False

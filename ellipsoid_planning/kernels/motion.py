@@ -316,6 +316,9 @@ def prove_motion(scene, first, last, clearance, motion, placed, stack):
     )
     if tw < 0.0:
         tx, ty, tz, tw = -tx, -ty, -tz, -tw
+    # Quaternions have any length.
+    size = math.sqrt(tx * tx + ty * ty + tz * tz + tw * tw)
+    tx, ty, tz, tw = tx / size, ty / size, tz / size, tw / size
     sine = norm(tx, ty, tz)
     if sine <= 1e-15:
         _set_motion(motion, first, move, first[3:7], 0.0, 0.0, 1.0, 0.0)

@@ -44,9 +44,12 @@ def in_bounds(scene, x, y, z):
 
 @kernel
 def is_rotation(qx, qy, qz, qw):
-    """Whether a quaternion of any length stands for a rotation: finite, and not zero."""
+    """Whether a quaternion of any length (1e-50 to 1e50) stands for a rotation.
+
+    Beyond that products of two of them, or their squares, overflow or vanish.
+    """
     square = qx * qx + qy * qy + qz * qz + qw * qw
-    return square > 0.0 and square < math.inf
+    return square > 1e-100 and square < 1e100
 
 
 @inlined

@@ -188,11 +188,12 @@ def interpolate(scene: Scene, first: Array, second: Array, s: Array) -> Array:
     if not scene.rotates:
         return np.asarray(position)
     if n == 2:
-        return np.column_stack([position, _angles(first[2], second[2], s)])
-    return np.column_stack([position, _slerp(first[3:], second[3:], s)])
+        return np.column_stack([position, angles(first[2], second[2], s)])
+    return np.column_stack([position, slerp(first[3:], second[3:], s)])
 
 
-def _angles(first: float, second: float, s: Array) -> Array:
+def angles(first: float, second: float, s: Array) -> Array:
+    """OMPL's interpolation of an angle at parameters s (m,)."""
     difference = second - first
     if abs(difference) <= np.pi:
         return np.asarray(first + difference * s)
@@ -202,7 +203,8 @@ def _angles(first: float, second: float, s: Array) -> Array:
     return np.where(value < -np.pi, value + 2 * np.pi, value)
 
 
-def _slerp(first: Array, second: Array, s: Array) -> Array:
+def slerp(first: Array, second: Array, s: Array) -> Array:
+    """OMPL's interpolation of a quaternion at parameters s (m,): (m, 4)."""
     product = float(first @ second)
     if abs(product) > SAME_ORIENTATION:
         return np.tile(first, (len(s), 1))
@@ -266,7 +268,7 @@ def _closest(
     values, directions, bodies = evaluate(configurations)
     k = int(values.argmin())
     best = Closest(float(values[k]), float(s[k]), directions[k], int(bodies[k]))
-    lowest = _local_minima(values)[:3]
+    lowest = local_minima(values)[:3]
     for k in lowest:
         low, high = s[max(k - 1, 0)], s[min(k + 1, count - 1)]
         for _ in range(8):
@@ -279,7 +281,7 @@ def _closest(
     return best
 
 
-def _local_minima(values: Array) -> list[int]:
+def local_minima(values: Array) -> list[int]:
     """Indices of samples not above their neighbours, lowest first."""
     padded = np.concatenate([[np.inf], values, [np.inf]])
     lowest = (padded[1:-1] <= padded[:-2]) & (padded[1:-1] <= padded[2:])

@@ -1,0 +1,1 @@
+"""Articulated robots: kinematics, validity and certified motions, against slow twins."""

@@ -1,4 +1,4 @@
-"""What single states cost with exact and tabulated safety functions and FCL, and with more links."""
+"""What states cost with safety functions and with FCL, and what they cost with more links."""
 
 from __future__ import annotations
 

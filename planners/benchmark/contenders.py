@@ -76,7 +76,7 @@ def _known_checker(name: str) -> Checker:
     for checker in CHECKERS:
         if checker == name:
             return checker
-    raise PlannerError(f"--checkers: expected {' or '.join(CHECKERS)}, got {name!r}")
+    raise PlannerError(f"--checkers: expected some of {', '.join(CHECKERS)}, got {name!r}")
 
 
 def _left_out(

@@ -38,7 +38,7 @@ def test_labels_name_the_checker_where_it_matters():
     ("planners", "checkers", "words"),
     [
         (["RTRConnect"], ["plugin"], "RRTConnect"),
-        (["RRT"], ["bullet"], "plugin or fcl"),
+        (["RRT"], ["bullet"], "plugin, tabulated, fcl"),
         (["RRT", "RRT"], ["plugin"], "twice"),
         ([], ["plugin"], "--planners"),
         (["HighwayRoadmap"], ["fcl"], "plug-in checker only"),

@@ -16,6 +16,7 @@ from ellipsoid_planning.roadmap.graph import RoadmapGraph, explored_graph
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 
 from .core_planner import CorePlanner
+from .spaces import is_articulated
 
 Array = NDArray[np.float64]
 _OPTIONAL = type(None)
@@ -51,6 +52,7 @@ class HighwayRoadmap(CorePlanner):
         "metric_weight": (float, int, _OPTIONAL),
     }
     PARAMETER_CLASS = RoadmapParameters
+    RIGID_ONLY = False
 
     def new_core(self, cspace: CSpace, parameters: RoadmapParameters) -> highway.HighwayRoadmap:
         """An empty roadmap."""
@@ -68,8 +70,8 @@ class HighwayRoadmap(CorePlanner):
         return outcome
 
     def kernels_in_use(self) -> tuple[Any, ...]:
-        """Improving a path takes kernels of its own."""
-        return type(self), self.anytime
+        """Improving a path takes kernels of its own, and articulated robots have theirs."""
+        return type(self), self.anytime, is_articulated(self._cspace())
 
     def check_parameters(self) -> None:
         """Check the present parameters, and lay out the first level, which depends on no query.

@@ -80,6 +80,11 @@ class ArticulatedCSpace(CSpace):
         return new_articulated_model(self.scene, self.kinematics)
 
     @property
+    def pose_size(self) -> int:
+        """How many numbers a row of :meth:`poses` has: 7 + V."""
+        return int(self.kinematics[kinematics.WIDTH])
+
+    @property
     def reach(self) -> float:
         """Largest distance of a point of the robot from its base, whatever its joints do."""
         return self.articulated.reach

@@ -83,6 +83,11 @@ class CSpace:
         return self.size
 
     @property
+    def pose_size(self) -> int:
+        """How many numbers a row of :meth:`poses` has: 7, and the values of joints."""
+        return 7
+
+    @property
     def size(self) -> float:
         """What gaps are compared with: how far points of a rigid piece get from its own frame."""
         return float(layout.part_rows(self.scene)[:, layout.PART_REACH].max())

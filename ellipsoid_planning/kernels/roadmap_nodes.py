@@ -16,7 +16,7 @@ from .roadmap_tables import (
     NODE_STAMP,
     NODES,
 )
-from .robot_model import layer_is_free, place_at, pose_is_free, scene_of
+from .robot_model import place_layer, pose_is_free, scene_of
 
 
 @kernel
@@ -32,8 +32,7 @@ def line_nodes(model, rm, layer, column, axis, intervals):
             rm.pose[m] = 0.0
         for m in range(rm.orientations.shape[1]):
             rm.pose[3 + m] = rm.orientations[layer, m]
-        place_at(model, rm.pose, rm.placed[layer])
-        rm.usable[layer] = layer_is_free(model, rm.pose, rm.placed[layer])
+        rm.usable[layer] = place_layer(model, rm.pose, rm.placed[layer])
         rm.ready[layer] = True
         rm.counters[LAYERS_PLACED] += 1
     if not rm.usable[layer]:

@@ -371,12 +371,18 @@ def ways_are_free(model, first, last, counts):
 
 
 @kernel
+def place_layer(model, pose, placed):
+    """Place a layer's robot at ``pose``: whether it stays clear of itself."""
+    place_at(model, pose, placed)
+    return layer_is_free(model, pose, placed)
+
+
+@kernel
 def layers_are_free(model, poses, out):
     """:func:`layer_is_free` of every row, placed with its base where the row says."""
     placed = new_placed(scene_of(model))
     for k in range(poses.shape[0]):
-        place_at(model, poses[k], placed)
-        out[k] = layer_is_free(model, poses[k], placed)
+        out[k] = place_layer(model, poses[k], placed)
 
 
 @kernel

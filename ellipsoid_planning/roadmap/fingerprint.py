@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
@@ -27,10 +28,15 @@ def fingerprint(cspace: CSpace) -> dict[str, Any]:
     obstacles, arenas = _numbers(world.obstacles), _numbers(world.arenas)
     return {
         "world": _digest([world.low, world.high, obstacles, arenas]),
-        "robot": _digest([size, fixed, _numbers(robot.parts)]),
+        "robot": _digest([size, fixed, _numbers(robot.parts), _joints(cspace)]),
         "clearance": cspace.clearance_required,
         "scene": _digest([cspace.scene]),
     }
+
+
+def _joints(cspace: CSpace) -> Array:
+    """What an articulated robot adds to its parts; nothing for rigid ones."""
+    return cspace.kinematics if isinstance(cspace, ArticulatedCSpace) else np.empty(0)
 
 
 def _numbers(bodies: Iterable[Ellipsoid]) -> Array:

@@ -244,7 +244,8 @@ class HighwayRoadmap:
             lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(local.world, axis, lines)
         if isinstance(self.cspace, ArticulatedCSpace):
-            orientations = self._joint_layers(self.cspace, refinement)
+            if orientations is None:
+                orientations = self._joint_layers(self.cspace, refinement)
             if self.cspace.articulated.base == FIXED_BASE:
                 columns, neighbours = np.zeros((0, 3)), neighbours[:0]
         elif not self.cspace.rotates:

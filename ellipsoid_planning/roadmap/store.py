@@ -60,8 +60,9 @@ def save(roadmap: HighwayRoadmap, path: str | Path, state: dict[str, Any]) -> No
 
 
 def _passages(finder: PassageFinder) -> dict[str, NDArray[Any]]:
+    none = np.empty((0, finder.cspace.pose_size))
     return {
-        "poses": np.concatenate([np.empty((0, 7)), *(found.poses for found in finder.found)]),
+        "poses": np.concatenate([none, *(found.poses for found in finder.found)]),
         "sizes": np.array([len(found.poses) for found in finder.found], dtype=np.int64),
         "lengths": np.array([found.length for found in finder.found], dtype=float),
     }
@@ -130,12 +131,12 @@ class StoredRoadmap:
         for index, entry in enumerate(self._entry("levels", list)):
             if not isinstance(entry, dict):
                 raise self._document.error(f"levels[{index}]: expected an entry of a level")
-            stored = StoredLevel(self._document, index, self._cspace.dimension)
+            stored = StoredLevel(self._document, index, self._cspace)
             try:
                 level = add_level(stored)
             except EllipsoidPlanningError as error:
                 raise self._document.error(f"levels[{index}]: {error}") from None
-            stored.fill(level, within(self._cspace, stored.box).scene)
+            stored.fill(level, within(self._cspace, stored.box).model)
 
     def restore_passages(self, finders: list[PassageFinder]) -> None:
         """Enter the passages found, and how many places were looked at, in empty ``finders``."""
@@ -151,13 +152,13 @@ class StoredRoadmap:
             finder.found.extend(self._stored_passages(place))
 
     def _stored_passages(self, place: str) -> list[Passage]:
-        poses = self._document.array(f"{place}.poses", float, None, 7)
+        poses = self._document.array(f"{place}.poses", float, None, self._cspace.pose_size)
         sizes = self._document.array(f"{place}.sizes", int, None)
         lengths = self._document.array(f"{place}.lengths", float, len(sizes))
         # The sum of many might wrap around to what is expected.
         if np.any((sizes < 2) | (sizes > len(poses))) or sum(sizes.tolist()) != len(poses):
             raise self._document.error(f"{place}.sizes: expected two or more poses a passage")
-        if np.any(lengths < 0.0) or not poses[:, 3:].any(axis=1).all():
+        if np.any(lengths < 0.0) or not poses[:, 3:7].any(axis=1).all():
             raise self._document.error(f"{place}: expected lengths and poses")
         ends = np.cumsum(sizes)
         return [

@@ -15,10 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.array_files import Document
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import EllipsoidPlanningError
-from ellipsoid_planning.kernels import placement, roadmap_tables
+from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.containers import EMPTY, rehash
 from ellipsoid_planning.kernels.lines import CAPACITY
+from ellipsoid_planning.kernels.robot_model import place_layer
 from ellipsoid_planning.roadmap.grid import MOST_COLUMNS, Grid
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.tables import grown, with_grid
@@ -81,7 +83,7 @@ class StoredLevel:
         orientations: of the level's own layers (L, 4).
     """
 
-    def __init__(self, document: Document, index: int, dimension: int) -> None:
+    def __init__(self, document: Document, index: int, cspace: CSpace) -> None:
         """Read level ``index``.
 
         Raises:
@@ -90,14 +92,16 @@ class StoredLevel:
         self._document, self._place = document, f"levels[{index}]"
         self._header: Mapping[str, Any] = document.header["levels"][index]
         self.refinement = self._count("refinement", 1000)
+        dimension = cspace.dimension
         self.axis = self._count("axis", dimension - 1)
         self.box = self._box(dimension)
-        self._layers = self._array("orientations", float, None, 4)
+        self._layers = self._array("orientations", float, None, cspace.pose_size - 3)
         self.orientations = self._layers[: self._count("own_layers", len(self._layers))]
-        if (dimension == 2 and self._layers[:, :2].any()) or not self._layers.any(axis=1).all():
+        planar = dimension == 2 and self._layers[:, :2].any()
+        if planar or not self._layers[:, :4].any(axis=1).all():
             raise self._error("orientations", "expected quaternions of the world's dimension")
 
-    def fill(self, level: Level, scene: Array) -> None:
+    def fill(self, level: Level, model: Any) -> None:
         """Enter everything in ``level``, an empty one of this refinement, axis and box.
 
         Raises:
@@ -106,7 +110,7 @@ class StoredLevel:
         self._fill_grid(level.grid, level.axis)
         level.tables = with_grid(level.tables, level.grid)
         self._fill_tables(level, level.grid)
-        self._place_layers(level, scene)
+        self._place_layers(level, model)
 
     def _fill_grid(self, grid: Grid, axis: int) -> None:
         """Add columns and layers of queries and passages in the order in which they came."""
@@ -173,13 +177,13 @@ class StoredLevel:
             raise self._error("edges", "expected each pair of nodes once")
         return edges
 
-    def _place_layers(self, level: Level, scene: Array) -> None:
+    def _place_layers(self, level: Level, model: Any) -> None:
         ready = self._array("ready", bool, level.grid.layer_count)
         tables = level.tables
         for layer in np.flatnonzero(ready):
-            q = tables.orientations[layer]
-            placement.place(scene, 0.0, 0.0, 0.0, *q, tables.placed[layer])
-            tables.ready[layer] = tables.usable[layer] = True
+            pose = np.concatenate([np.zeros(3), tables.orientations[layer]])
+            tables.usable[layer] = place_layer(model, pose, tables.placed[layer])
+            tables.ready[layer] = True
         tables.counters[roadmap_tables.LAYERS_PLACED] = np.count_nonzero(ready)
 
     def _box(self, dimension: int) -> tuple[Array, Array] | None:

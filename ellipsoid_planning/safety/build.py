@@ -39,6 +39,7 @@ def fill_tables(
     """
     if workers is not None and workers < 1:
         raise TableError(f"workers: expected a positive whole number, got {workers!r}")
+    _compile()
     total, done, tables = sum(plan.size for plan in plans), 0, []
 
     def on_lines(count: int) -> None:
@@ -53,6 +54,15 @@ def fill_tables(
             chunks = _chunks(pool, plan, on_lines)
             tables.append(_joined(plan, chunks, time.perf_counter() - began))
     return tuple(tables)
+
+
+def _compile() -> None:
+    """Have the kernel compiled before anything is timed: no orientation, no world."""
+    three, none = np.zeros(3), np.empty(0, dtype=np.int32)
+    counts, out = np.zeros(3, dtype=np.int64), np.empty((0, 2), dtype=np.uint16)
+    scene, quaternions = np.zeros(layout.HEADER), np.empty((0, 4))
+    scene.setflags(write=False)
+    safety_sweep.sweep(scene, quaternions, 0, three, three, counts, 0.0, 1.0, none, out)
 
 
 def table_scene(plan: TablePlan) -> Array | None:

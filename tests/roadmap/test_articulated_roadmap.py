@@ -168,7 +168,7 @@ def test_gradients_of_gaps_are_those_of_finite_steps(kind):
     world = scattered() if kind == "snake" else replace(slit(0.4), arenas=())
     cspace = cspace_of(world, snake() if kind == "snake" else chain())
     rng, model = np.random.default_rng(2), cspace.model
-    low, high = (0.0, 10.0) if kind == "snake" else ([-4.0, -2.0, -1.0], [0.0, 2.0, 1.0])
+    low, high = (0.0, 10.0) if kind == "snake" else ([-6.0, -2.0, -0.5], [2.0, 2.0, 0.5])
     size, checked = robot_model.step_count(model), 0
     work = new_workspace(model)
 
@@ -181,7 +181,7 @@ def test_gradients_of_gaps_are_those_of_finite_steps(kind):
         )  # fmt: skip
         return table[:count]
 
-    for row in random_configurations(cspace.robot, rng, 30, low, high, 1.0):
+    for row in random_configurations(cspace.robot, rng, 120, low, high, 1.0):
         pose = cspace.poses(row)[0]
         here = rows_at(pose)
         step = rng.normal(size=size)
@@ -199,7 +199,7 @@ def test_gradients_of_gaps_are_those_of_finite_steps(kind):
         apart = here[:, 0] > 1e-3
         np.testing.assert_allclose((here[:, 1 : 1 + size] @ step)[apart], slopes[apart], atol=2e-4)
         checked += int(apart.sum())
-    assert checked > 20
+    assert checked > 15
 
 
 def test_steps_and_differences_are_inverse():

@@ -7,15 +7,18 @@ import pytest
 
 from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.errors import TableError
+from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.geometry.orientation import rotation_from_quaternion
 from ellipsoid_planning.geometry.rows import body_rows, placed_row
 from ellipsoid_planning.kernels import kinematics, layout, safety_table
 from ellipsoid_planning.kernels.separation import DECIDE, separation
+from ellipsoid_planning.robots import RigidRobot
 from ellipsoid_planning.safety import ExactSafety, TableParameters, TabulatedSafety
 from ellipsoid_planning.safety.build import fill_tables, table_scene
 from ellipsoid_planning.safety.planning import plan_tables
 from ellipsoid_planning.world import World
-from tests.safety.scenes import COARSE, KINDS, crowded, near_contact, rigid, robot, states
+from tests.random_trees import random_configuration, random_tree
+from tests.safety.scenes import COARSE, KINDS, crowd, crowded, near_contact, rigid, robot, states
 
 
 @pytest.mark.parametrize("arena", [False, True])
@@ -29,6 +32,42 @@ def test_answers_are_those_of_the_exact_function(kind, arena):
     assert 10 < found.sum() < len(drawn)
     assert safety.is_safe(drawn[0]) == found[0]
     assert safety.answers(drawn).mean() > 0.1
+
+
+@pytest.mark.parametrize("base", ["free", "translating", "fixed"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_trees_of_links_of_several_parts_are_answered_as_exactly(dimension, base):
+    rng, open_ = np.random.default_rng([dimension, len(base)]), 0
+    for seed in range(4):
+        own = random_tree(rng, dimension, base)
+        cspace = cspace_of(crowd(dimension, 12, arena=seed == 3, seed=seed), own)
+        safety = TabulatedSafety(cspace, COARSE, keep=False)
+        drawn = np.array([random_configuration(rng, own) for _ in range(300)])
+        assert np.array_equal(safety.are_safe(drawn), cspace.are_valid(drawn))
+        answers = safety.answers(drawn)
+        for row, safe in zip(drawn, answers, strict=True):
+            bodies = own.bodies_at(row)
+            for parts in (
+                m for m, proved in zip(safety._plan.members, safe, strict=True) if proved
+            ):
+                assert all(_is_clear(cspace, bodies[i]) for i in parts)
+        open_ += int(answers.sum())
+    assert open_ > 100
+
+
+@pytest.mark.parametrize("ratio", [1e3, 1e6])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_needles_among_needles_and_discs(dimension, ratio):
+    thin, world = [1.0, 1.0 / ratio, 1.0 / ratio][:dimension], crowd(dimension, 15)
+    wide = np.array([2.0 / ratio, 2.0, 2.0][:dimension])
+    bodies = tuple(Ellipsoid(body.centre, body.rotation, wide) for body in world.obstacles)
+    robot_ = RigidRobot((Ellipsoid.from_semi_axes(thin),))
+    cspace = cspace_of(World(world.low, world.high, bodies), robot_)
+    safety = TabulatedSafety(cspace, COARSE, keep=False)
+    drawn = np.concatenate([states(cspace, 500), near_contact(cspace, 5)])
+    assert np.array_equal(safety.are_safe(drawn), cspace.are_valid(drawn))
+    for row, safe in zip(drawn, safety.answers(drawn), strict=True):
+        assert not safe[0] or _is_clear(cspace, cspace.robot.bodies_at(row)[0])
 
 
 @pytest.mark.parametrize("clearance", [0.0, 0.05])

@@ -146,4 +146,5 @@ def _joint_values(view: LayerSlice) -> str:
 
 
 def _degrees(angle: float) -> str:
-    return f"{math.degrees(angle):.0f}°".replace("-", "\N{MINUS SIGN}")
+    degrees = round(math.degrees(angle)) + 0  # no minus before a zero
+    return f"{degrees:d}°".replace("-", "\N{MINUS SIGN}")

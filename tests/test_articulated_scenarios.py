@@ -31,6 +31,7 @@ class Expected:
 
 
 SCENES = {
+    "arm-6r": Expected(obstacles=8, links=7, freedom=6, identical=False),
     "rabbit-5dof-narrow": Expected(obstacles=11, links=3, freedom=5, identical=False),
     "rabbit-5dof-open": Expected(obstacles=5, links=3, freedom=5, identical=False),
     "snake-7dof-maze": Expected(obstacles=40, links=5, freedom=7, identical=True),

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SWEPT_POSES = 9
 SEEN_THROUGH = 0.4  # opacity
+MOST_HIDDEN = 0.2  # share of the robot's bodies that an obstacle may hide before it is seen through
 SAME = 1e-4  # difference of bodies in one place, as a part of their size
 LIGHT = np.array([-0.37, 0.74, 0.56])  # to the right, up, towards the viewer
 
@@ -111,7 +112,9 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     else:
         _draw_floor(axes, painting.camera, scenario)
     for obstacle in world.obstacles:
-        painting.add(ellipsoid_patches(obstacle, 96, 48), colours.OBSTACLE)
+        hides = _hidden_share(painting.camera, obstacle, scenario, trajectory) > MOST_HIDDEN
+        alpha = SEEN_THROUGH if hides else 1.0
+        painting.add(ellipsoid_patches(obstacle, 96, 48), colours.OBSTACLE, alpha=alpha)
     drawn = _add_ends(painting, scenario)
     if trajectory is not None:
         _add_swept(painting, scenario, trajectory, drawn)
@@ -119,6 +122,23 @@ def draw_workspace(axes: Axes, scenario: Scenario, trajectory: Trajectory | None
     axes.set_aspect("equal", anchor="N")
     axes.autoscale_view()
     axes.set_axis_off()
+
+
+def _hidden_share(
+    camera: Camera, obstacle: Ellipsoid, scenario: Scenario, trajectory: Trajectory | None
+) -> float:
+    """Which share of the robot's bodies, at its ends and along the path, an obstacle hides."""
+    rows = [scenario.start, scenario.goal]
+    if trajectory is not None:
+        count = len(trajectory.configurations)
+        picked = np.linspace(0, count - 1, min(count, SWEPT_POSES)).astype(int)
+        rows += list(trajectory.configurations[picked])
+    robot = scenario.robot
+    points = np.array([body.centre for row in rows for body in robot.bodies_at(row)])
+    inverse = np.linalg.inv(obstacle.matrix)
+    from_centre, ahead = (points - obstacle.centre) @ inverse.T, inverse @ camera.back
+    nearest = np.maximum(-(from_centre @ ahead) / (ahead @ ahead), 0.0)
+    return float(np.mean(np.linalg.norm(from_centre + np.outer(nearest, ahead), axis=1) < 1.0))
 
 
 def _add_ends(painting: Painting, scenario: Scenario) -> set[bytes]:

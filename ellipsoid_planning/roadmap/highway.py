@@ -19,6 +19,7 @@ from ellipsoid_planning.outcome import EXHAUSTED, SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.joint_layers import (
     guided_layers,
+    has_fixed_base,
     home_configuration,
     layer_metric,
     spread_layers,
@@ -32,7 +33,6 @@ from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
 from ellipsoid_planning.roadmap.shorten import shorten
 from ellipsoid_planning.roadmap.store import StoredRoadmap, save
 from ellipsoid_planning.roadmap.store_level import StoredLevel
-from ellipsoid_planning.robots.articulated import FIXED_BASE
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,8 @@ class HighwayRoadmap:
         self.levels: list[Level] = []
         self.passages: list[PassageFinder] = []
         self._axis = self.parameters.checked_axis(cspace.dimension)
-        self._axes = cspace.dimension if self.parameters.axis is None else 1
+        turns = self.parameters.axis is None and not has_fixed_base(cspace)
+        self._axes = cspace.dimension if turns else 1
         chosen = self.parameters.metric_weight
         self._weight = turn_length(cspace.robot) if chosen is None else chosen
         self._random = np.random.default_rng(self.parameters.seed)
@@ -246,7 +247,7 @@ class HighwayRoadmap:
         if isinstance(self.cspace, ArticulatedCSpace):
             if orientations is None:
                 orientations = self._joint_layers(self.cspace, refinement)
-            if self.cspace.articulated.base == FIXED_BASE:
+            if has_fixed_base(self.cspace):
                 columns, neighbours = np.zeros((0, 3)), neighbours[:0]
         elif not self.cspace.rotates:
             orientations = np.empty((0, 4))

@@ -22,7 +22,7 @@ from ellipsoid_planning.kernels.roadmap_metric import (
 )
 from ellipsoid_planning.kernels.robot_model import layers_are_free
 from ellipsoid_planning.roadmap.orientations import headings
-from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.joint import BALL, CONTINUOUS, Joint
 
 Array = NDArray[np.float64]
@@ -30,6 +30,11 @@ Array = NDArray[np.float64]
 # With more angles than this (the base's among them) layers are quasi-random, not a product grid.
 MOST_GRID_ANGLES = 3
 _KINDS = {BALL: METRIC_BALL, CONTINUOUS: METRIC_CONTINUOUS}
+
+
+def has_fixed_base(cspace: CSpace) -> bool:
+    """Whether the robot's base cannot move: then a layer is one configuration."""
+    return isinstance(cspace, ArticulatedCSpace) and cspace.articulated.base == FIXED_BASE
 
 
 def layer_metric(cspace: CSpace) -> Array:

@@ -17,8 +17,7 @@ from ellipsoid_planning.geometry.rows import placed_row
 from ellipsoid_planning.kernels import centring, contact_model, layout, linear, validity
 from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
 from ellipsoid_planning.roadmap.gates import Gate, GateFinder, only_translates, probe
-from ellipsoid_planning.roadmap.joint_layers import middle_of_joints
-from ellipsoid_planning.robots.articulated import FIXED_BASE
+from ellipsoid_planning.roadmap.joint_layers import has_fixed_base, middle_of_joints
 from ellipsoid_planning.robots.rigid import RigidRobot
 
 Array = NDArray[np.float64]
@@ -118,7 +117,7 @@ def _at_gates(
     cspace: CSpace, first: Array, last: Array, workspace: centring.Workspace
 ) -> Iterator[Seed | None]:
     """Gates by the length of the way through them, each at one orientation after the other."""
-    if _is_fixed(cspace):
+    if has_fixed_base(cspace):
         return
     widest = _WIDEST * cspace.reach if only_translates(cspace) else cspace.reach
     finder = GateFinder(cspace, *probe(cspace), widest, workspace)
@@ -214,10 +213,6 @@ def _frozen(cspace: CSpace, joints: Array) -> RigidRobot:
     position, rotation = robot.pose(at_home)
     home = (part.transform(rotation.T, -rotation.T @ position) for part in robot.bodies_at(at_home))
     return RigidRobot(tuple(home))
-
-
-def _is_fixed(cspace: CSpace) -> bool:
-    return isinstance(cspace, ArticulatedCSpace) and cspace.articulated.base == FIXED_BASE
 
 
 def _fitting_quaternions(robot: RigidRobot, normal: Array, across: Array) -> Iterator[Array]:

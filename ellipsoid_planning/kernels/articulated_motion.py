@@ -22,12 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .articulated_rates import (
-    BOUND_ACCELERATION,
     BOUND_SPEED,
     BOUND_SPIN,
     BOUNDS,
+    LOCAL,
+    LOCAL_ACCELERATION,
+    LOCAL_TURN,
     keep_rates,
     set_bounds,
+    set_local_bounds,
     set_rates,
     turn_other_way,
 )
@@ -90,6 +93,7 @@ class MotionWorkspace(NamedTuple):
     all_rates: NDArray[np.float64]
     frames: NDArray[np.float64]
     bounds: NDArray[np.float64]
+    local: NDArray[np.float64]
     placed: NDArray[np.float64]
     before: NDArray[np.float64]
     after: NDArray[np.float64]
@@ -118,6 +122,7 @@ def new_motion_workspace(scene, kinematics):
         np.empty(width),
         frames,
         np.empty((frames.shape[0], BOUNDS)),
+        np.empty((frames.shape[0], LOCAL)),
         new_placed(scene),
         np.empty((parts, PLACED)),
         np.empty((parts, PLACED)),
@@ -161,14 +166,28 @@ def _place_piece(scene, kinematics, work, level, half):
     body_frames(kinematics, work.row, work.frames)
     body_velocities(kinematics, work.rates, work.frames)
     place_on_frames(parts, owners, work.frames, work.placed)
+    set_local_bounds(
+        scene, kinematics, work.start, work.rates, work.frames, half, work.bounds, work.local
+    )
     for i in range(parts.shape[0]):
         if work.left[level, i]:
             b = int(owners[i])
-            spin = work.bounds[b, BOUND_SPIN]
-            bend = work.bounds[b, BOUND_ACCELERATION] + spin * spin * parts[i, PART_REACH]
-            speed = work.bounds[b, BOUND_SPEED] + abs(spin) * parts[i, PART_REACH]
+            reach = parts[i, PART_REACH]
+            bend = work.local[b, LOCAL_ACCELERATION] + work.local[b, LOCAL_TURN] * reach
+            speed = work.bounds[b, BOUND_SPEED] + abs(work.bounds[b, BOUND_SPIN]) * reach
             work.room[i] = 0.5 * bend * half * half + 2.0 * ROUNDING * (scene[SCALE] + speed)
             _extrapolate(work.frames, b, work.placed, i, half, work.before, work.after)
+
+
+@kernel
+def _stays_inside(arenas, a, placed, i, scene, clearance, way, room):
+    """Whether part ``i`` is inside with so much room in the arena's norm; a rough look first."""
+    planar, scale = scene[DIMENSION] == 2.0, scene[SCALE]
+    g = arena_extent(arenas, a, placed, i, scale, clearance, planar, way, False)
+    if math.sqrt(g) + room <= 1.0:
+        return True
+    g = arena_extent(arenas, a, placed, i, scale, clearance, planar, way, True)
+    return math.sqrt(g) + room <= 1.0
 
 
 @inlined
@@ -181,10 +200,10 @@ def _part_in_arenas(scene, work, i, clearance, way):
             continue
         size = inverse_size(arenas, a, BODY_WHITEN if way == SHRINK_ARENA else BODY_INVERSE)
         room = work.room[i] * size
-        g = arena_extent(arenas, a, work.before, i, scene[SCALE], clearance, planar, way, True)
-        if math.sqrt(g) + room <= 1.0:
-            g = arena_extent(arenas, a, work.after, i, scene[SCALE], clearance, planar, way, True)
-        if not math.sqrt(g) + room <= 1.0:
+        if not (
+            _stays_inside(arenas, a, work.before, i, scene, clearance, way, room)
+            and _stays_inside(arenas, a, work.after, i, scene, clearance, way, room)
+        ):
             g = arena_extent(arenas, a, work.placed, i, scene[SCALE], clearance, planar, way, True)
             result = 0 if g <= 1.0 else -1
     return result

@@ -10,9 +10,9 @@ from .compile import kernel
 from .kinematics import (
     BALL,
     CONTINUOUS,
+    FRAME_SPIN,
     JOINT_KIND,
     JOINT_PARENT,
-    JOINT_REACH,
     JOINT_TRANSLATION,
     JOINT_VALUE,
     PRISMATIC,
@@ -28,12 +28,18 @@ HELD_ROTATION = 6e-5
 _UNIT = 5e-10
 # From this turn on rounding may decide which way OMPL turns.
 _HALF_TURN = math.pi - 1e-8
-# Columns of the bounds on a body's motion: angular rate (signed in the plane), speed and
-# acceleration of its frame's origin.
+# Columns of the bounds on a body's motion: angular rate (signed in the plane), and the speed of its
+# frame's origin.
 BOUND_SPIN = 0
 BOUND_SPEED = 1
-BOUND_ACCELERATION = 2
-BOUNDS = 3
+BOUNDS = 2
+# Columns of the bounds on a piece: angular rate and its change, what bends the ways of points of
+# the body by their distance from its origin, and that origin's acceleration.
+LOCAL_RATE = 0
+LOCAL_CHANGE = 1
+LOCAL_TURN = 2
+LOCAL_ACCELERATION = 3
+LOCAL = 4
 
 
 @kernel
@@ -155,9 +161,9 @@ def set_bounds(scene, kinematics, start, rates, with_base, bounds):
     """Write what bounds the motion of each body's points to ``bounds`` (B, BOUNDS).
 
     A body whose rotation is a product of rotations at constant rates α_k about axes fixed in each
-    other's frames has |ω̇ + ω×(ω× ·)| ≤ (Σ|α_k|)², in the plane (Σα_k)². So a point at r from the
-    origin of its body's frame accelerates by at most a + w²|r|, with a summed up along the tree.
-    Without ``with_base`` the base is held, which changes nothing between the robot's own parts.
+    other's frames turns at a rate of at most w = Σ|α_k|, in the plane w = Σα_k, and its second
+    derivative is at most w². Without ``with_base`` the base is held, which changes nothing between
+    the robot's own parts.
     """
     joints = joint_rows(kinematics)
     planar = scene[DIMENSION] == 2.0
@@ -165,7 +171,7 @@ def set_bounds(scene, kinematics, start, rates, with_base, bounds):
     if with_base:
         spin = rates[5] if planar else norm(rates[3], rates[4], rates[5])
         speed = norm(rates[0], rates[1], rates[2])
-    bounds[0, BOUND_SPIN], bounds[0, BOUND_SPEED], bounds[0, BOUND_ACCELERATION] = spin, speed, 0.0
+    bounds[0, BOUND_SPIN], bounds[0, BOUND_SPEED] = spin, speed
     for j in range(joints.shape[0]):
         p, b = int(joints[j, JOINT_PARENT]), j + 1
         v, kind, t = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND]), JOINT_TRANSLATION
@@ -176,9 +182,6 @@ def set_bounds(scene, kinematics, start, rates, with_base, bounds):
             slide = abs(rates[v])
             arm += max(abs(start[v]), abs(start[v] + rates[v]))
         bounds[b, BOUND_SPEED] = bounds[p, BOUND_SPEED] + abs(spin) * arm + slide
-        bounds[b, BOUND_ACCELERATION] = (
-            bounds[p, BOUND_ACCELERATION] + spin * spin * arm + 2.0 * abs(spin) * slide
-        )
         if kind == BALL:
             spin += norm(rates[v], rates[v + 1], rates[v + 2])
         elif kind != PRISMATIC:
@@ -187,10 +190,38 @@ def set_bounds(scene, kinematics, start, rates, with_base, bounds):
 
 
 @kernel
-def largest_reach(kinematics):
-    """The largest reach of a joint; 0 without joints."""
+def set_local_bounds(scene, kinematics, start, rates, frames, half, bounds, local):
+    """Write sharper bounds for a piece [m − half, m + half] to ``local`` (B, LOCAL).
+
+    ``frames`` are those of m, with velocities. There the angular velocity ω is known, and it
+    changes by no more than |ω̇| ≤ Σ|ω_k||α_k|, summed over the joints on the way, ω_k being that of
+    the body that joint k hangs on (in the plane not at all). A point at r from the origin of its
+    body's frame accelerates by at most a + t|r|, t ≥ |ω̇| + |ω|².
+    """
     joints = joint_rows(kinematics)
-    reach = 0.0
+    planar = scene[DIMENSION] == 2.0
+    local[0, LOCAL_RATE], local[0, LOCAL_CHANGE] = abs(bounds[0, BOUND_SPIN]), 0.0
+    local[0, LOCAL_TURN], local[0, LOCAL_ACCELERATION] = bounds[0, BOUND_SPIN] ** 2, 0.0
     for j in range(joints.shape[0]):
-        reach = max(reach, joints[j, JOINT_REACH])
-    return reach
+        p, b = int(joints[j, JOINT_PARENT]), j + 1
+        v, kind, t = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND]), JOINT_TRANSLATION
+        arm = norm(joints[j, t], joints[j, t + 1], joints[j, t + 2])
+        slide, turn = 0.0, 0.0
+        if kind == PRISMATIC:
+            slide = abs(rates[v])
+            arm += max(abs(start[v]), abs(start[v] + rates[v]))
+        elif kind == BALL:
+            turn = norm(rates[v], rates[v + 1], rates[v + 2])
+        elif not planar:
+            turn = abs(rates[v])
+        change = local[p, LOCAL_CHANGE] + local[p, LOCAL_RATE] * turn
+        s = FRAME_SPIN
+        rate = norm(frames[b, s], frames[b, s + 1], frames[b, s + 2]) * (1.0 + 1e-12)
+        rate = min(abs(bounds[b, BOUND_SPIN]), rate + change * half)
+        local[b, LOCAL_RATE], local[b, LOCAL_CHANGE] = rate, change
+        local[b, LOCAL_TURN] = min(change + rate * rate, bounds[b, BOUND_SPIN] ** 2)
+        local[b, LOCAL_ACCELERATION] = (
+            local[p, LOCAL_ACCELERATION]
+            + local[p, LOCAL_TURN] * arm
+            + 2.0 * local[p, LOCAL_RATE] * slide
+        )

@@ -20,6 +20,7 @@ from ellipsoid_planning.cspace.articulated_rows import (
     rows_of,
 )
 from ellipsoid_planning.cspace.contacts import Contact, bound_contacts, placed_contacts
+from ellipsoid_planning.cspace.joint_ranges import never_meeting
 from ellipsoid_planning.cspace.layer import Layer
 from ellipsoid_planning.cspace.space import CSpace, check_clearance
 from ellipsoid_planning.errors import GeometryError
@@ -44,9 +45,10 @@ class ArticulatedCSpace(CSpace):
 
     Valid means: the base in its bounds, every joint in its limits, every part clear of obstacles
     and inside the arenas (at the clearance), and no part meets another (whatever the clearance)
-    but those of neighbouring links and of ignored pairs. What is called valid is proved so; see
-    CSpace for what may be refused. The rounding of forward kinematics adds a third of that for
-    each joint. Motions are also refused
+    but those of neighbouring links and of ignored pairs. Pairs of links that are quickly proved
+    never to meet within the joint limits are not tested (cspace.joint_ranges). What is called
+    valid is proved so; see CSpace for what may be refused. The rounding of forward kinematics adds
+    a third of that for each joint. Motions are also refused
 
     - that keep a gap of less than about 1e-9 of the size all along while they turn: they would
       take more than 1e5 pieces (a gap that small in passing takes some tens),
@@ -72,7 +74,7 @@ class ArticulatedCSpace(CSpace):
         self.clearance_required = float(clearance)
         bodies = bodies_of(robot)
         self.scene = pack_articulated_scene(world, robot, bodies, self.clearance_required)
-        self.kinematics = pack_kinematics(robot, bodies)
+        self.kinematics = pack_kinematics(robot, bodies, never_meeting(robot))
 
     @property
     def model(self) -> Any:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.cspace.articulated_packing import may_meet
 from ellipsoid_planning.cspace.contacts import Contact
 from ellipsoid_planning.kernels import kinematics as tables
 from ellipsoid_planning.kernels import layout, self_collision, separation
@@ -40,15 +41,16 @@ def self_contacts(
     robot: ArticulatedRobot, scene: Array, kinematics: Array, frames: Array, placed: Array
 ) -> list[Contact]:
     """Pairs of placed parts that may not meet and are not proved apart."""
-    pairs = tables.pair_matrix(kinematics)
     shapes, owners = tables.shape_rows(kinematics), tables.owners_of(kinematics)
+    # All of them: joints out of their limits may bring links together that else never meet.
+    pairs = may_meet(robot, owners)
     required = 2.0 * layout.ROUNDING * float(scene[layout.SCALE])
     body = self_collision.new_body()
     contacts = []
     for i, first in enumerate(robot.parts):
         self_collision.as_body(shapes, i, frames[int(owners[i])], placed, body)
         for j in range(i + 1, len(robot.parts)):
-            if pairs[i, j] == 0.0:
+            if not pairs[i, j]:
                 continue
             second = robot.parts[j]
             gap = separation.separation(body, 0, placed, j, 0.5, math.inf, separation.CONVERGE)[0]

@@ -144,9 +144,15 @@ def _shape_row(part: Ellipsoid, place: _Placement) -> Array:
     return np.concatenate([matrix.ravel(), inverse.ravel()])
 
 
-def may_meet(robot: ArticulatedRobot, owners: Array) -> NDArray[np.bool_]:
-    """Which parts (P, P) self-collision is about: not of one body, neighbours or ignored links."""
-    joined = {frozenset((joint.parent, joint.child)) for joint in robot.joints} | robot.ignored
+def may_meet(
+    robot: ArticulatedRobot, owners: Array, apart: frozenset[frozenset[str]] = frozenset()
+) -> NDArray[np.bool_]:
+    """Which parts (P, P) self-collision is about: not of one body, neighbours or ignored links.
+
+    Nor of the pairs of links in ``apart``, which are known never to meet.
+    """
+    joined = {frozenset((joint.parent, joint.child)) for joint in robot.joints}
+    joined |= robot.ignored | apart
     links = robot.part_links
     pairs = np.zeros((len(links), len(links)), dtype=np.bool_)
     for i, first in enumerate(links):
@@ -155,8 +161,10 @@ def may_meet(robot: ArticulatedRobot, owners: Array) -> NDArray[np.bool_]:
     return pairs
 
 
-def pack_kinematics(robot: ArticulatedRobot, bodies: Bodies) -> Array:
-    """The kinematics as one flat array, read-only."""
+def pack_kinematics(
+    robot: ArticulatedRobot, bodies: Bodies, apart: frozenset[frozenset[str]] = frozenset()
+) -> Array:
+    """The kinematics as one flat array, read-only; links in ``apart`` are not tested."""
     header = np.zeros(layout.KINEMATICS_HEADER)
     header[layout.JOINT_COUNT] = len(bodies.joints)
     header[layout.PARTS] = len(bodies.parts)
@@ -165,7 +173,7 @@ def pack_kinematics(robot: ArticulatedRobot, bodies: Bodies) -> Array:
     header[layout.STEP_SIZE] = 6 + sum(_tangents(joint.type) for joint in robot.moving_joints)
     header[layout.BASE_MOVES] = robot.base != FIXED_BASE
     header[layout.ROBOT_REACH] = robot_reach(robot)
-    pairs = may_meet(robot, bodies.owners).astype(float)
+    pairs = may_meet(robot, bodies.owners, apart).astype(float)
     tables = (bodies.joints, bodies.owners, bodies.shapes, pairs)
     packed = np.concatenate([header, *(table.ravel() for table in tables)])
     packed.setflags(write=False)

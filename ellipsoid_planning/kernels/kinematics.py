@@ -116,7 +116,7 @@ def _set_base(row, frames):
 
 
 @kernel
-def _hang(joints, j, parent, row, frames):
+def hang(joints, j, parent, row, frames):
     """Write the frame of body j + 1 from its parent's."""
     o, t, body = JOINT_ROTATION, JOINT_TRANSLATION, j + 1
     for k in range(3):
@@ -156,7 +156,7 @@ def body_frames(kinematics, row, frames):
     joints = joint_rows(kinematics)
     _set_base(row, frames)
     for j in range(joints.shape[0]):
-        _hang(joints, j, int(joints[j, JOINT_PARENT]), row, frames)
+        hang(joints, j, int(joints[j, JOINT_PARENT]), row, frames)
 
 
 @kernel

@@ -25,7 +25,9 @@ def orbit(dimension: int, against: str, gap: float) -> tuple[ArticulatedCSpace, 
         return Joint.of(name, parent, child, "revolute", at(x), axis=axis, lower=-3, upper=3)
 
     if against == "itself":
-        links = (Link("a", (ball(1.0, *z),)), Link("b"), Link("c", (ball(1.0 - gap, *z),)))
+        # Without something that they do meet in the end, the links would be proved apart for good.
+        stop = ball(0.5, *[2.0 * np.cos(3.0), 2.0 * np.sin(3.0), 0.0][:dimension])
+        links = (Link("a", (ball(1.0, *z), stop)), Link("b"), Link("c", (ball(1.0 - gap, *z),)))
         joints = (hinge("first", "a", "b", 0.0), hinge("second", "b", "c", 2.0))
         return ArticulatedCSpace(world(dimension), ArticulatedRobot(links, joints, "fixed")), [1, 1]
     inner = against == "obstacle"

@@ -91,7 +91,7 @@ def joint_tables(report: Mapping[str, Any]) -> Iterator[Table]:
     """The report as two tables, angles in degrees."""
     table = Table(title=escape(report["scenario"]), title_justify="left")
     for name in ("joint", "type", "parent", "child"):
-        table.add_column(name, overflow="fold")
+        table.add_column(name, overflow="fold", no_wrap=name == "joint")
     for name in ("limits", "weight", "reach"):
         table.add_column(name, justify="right")
     kinds = {joint["name"]: joint["type"] for joint in report["joints"]}

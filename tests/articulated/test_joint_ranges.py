@@ -187,3 +187,28 @@ def test_what_is_proved_apart_is_not_tested() -> None:
 def test_large_robots_are_left_alone_after_some_work() -> None:
     robot = snake(40)
     assert never_meeting(robot) == frozenset()
+
+
+@pytest.mark.parametrize("kind", ["prismatic", "revolute"])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_contacts_at_the_end_of_the_limits(kind: str, backwards: bool) -> None:
+    """Tiny bodies that meet at one end alone: there the bound on the motion has nothing to give."""
+    upper = 1.0
+    start = np.array([2.0, 0.0])
+    turned = 2.0 * np.array([np.cos(upper), np.sin(upper)])
+    end = turned if kind == "revolute" else start + np.array([upper, 0.0])
+    for size, verdict in ((1e-3, "meet"), (1e-6, "meet"), (-1e-6, "never")):
+        # A hair short of each other, or overlapping.
+        room = (1.8 if size > 0 else 2.2) * abs(size)
+        away = end + room * end / np.linalg.norm(end)
+        links = (
+            Link("a", (Ellipsoid.from_semi_axes([abs(size)] * 2, away),)),
+            Link("b"),
+            Link("c", (Ellipsoid.from_semi_axes([abs(size)] * 2, start),)),
+        )
+        joints = (
+            Joint.of("rest", "a", "b", "fixed", [0.0, 0.0]),
+            Joint.of("move", "b", "c", kind, [0.0, 0.0], axis=[1.0, 0.0], lower=-0.5, upper=upper),
+        )
+        (pair,) = pair_verdicts(ArticulatedRobot(links[::-1] if backwards else links, joints))
+        assert pair.verdict == verdict

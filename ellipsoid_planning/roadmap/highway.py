@@ -353,12 +353,13 @@ class HighwayRoadmap:
 
     def _compile_search(self) -> None:
         robot, world = self.cspace.robot, self.cspace.world
-        ends = np.zeros((2, robot.configuration_size))
-        ends[:, : robot.dimension] = [world.low, world.high]
-        if robot.rotates and robot.dimension == 3:
-            ends[:, -1] = 1.0
         if isinstance(self.cspace, ArticulatedCSpace):
             ends = np.repeat(home_configuration(self.cspace.articulated)[None], 2, axis=0)
+        else:
+            ends = np.zeros((2, robot.configuration_size))
+            ends[:, : robot.dimension] = [world.low, world.high]
+            if robot.rotates and robot.dimension == 3:
+                ends[:, -1] = 1.0
         poses = self.cspace.poses(ends)
         self._level(0, 0, None, poses[:1], poses[1:]).compile_kernels(poses)
         if not isinstance(self.cspace, ArticulatedCSpace):

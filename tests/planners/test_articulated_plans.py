@@ -8,6 +8,11 @@ from ompl import base as ob
 from ompl import geometric as og
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.robots.articulated import ArticulatedRobot, Link
+from ellipsoid_planning.robots.joint import Joint
+from ellipsoid_planning.scenario import Scenario
+from ellipsoid_planning.world import World
 from planners import bindings
 from planners.highway import HighwayRoadmap
 from planners.registry import find_planner, planner_names
@@ -45,6 +50,20 @@ def test_plans_are_certified_and_measured_as_by_ompl(kind, checker):
     length = sum(si.distance(first, second) for first, second in pairwise(states))
     assert result.path.length == pytest.approx(length, rel=1e-12)
     assert (result.path.base_travel == 0.0) == (scenario.robot.base == "fixed")
+
+
+@pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic"])
+def test_one_joint_on_a_fixed_base(kind):
+    """Its configurations are shorter than the positions of a base."""
+    limits = {} if kind == "continuous" else {"lower": -1.0, "upper": 1.0}
+    arm = Link("arm", (Ellipsoid.from_semi_axes([0.6, 0.1], [0.7, 0.0]),))
+    joint = Joint.of("turn", "base", "arm", kind, [0.0, 0.0], **limits)
+    robot = ArticulatedRobot((Link("base"), arm), (joint,), "fixed")
+    box = World(np.full(2, -3.0), np.full(2, 3.0))
+    scenario = Scenario("one joint", box, robot, np.array([-0.9]), np.array([1.0]))
+    result = plan(scenario, time_limit=5.0, seed=1)
+    assert result.solved
+    assert result.path.certified
 
 
 @pytest.mark.parametrize("name", INFORMED)

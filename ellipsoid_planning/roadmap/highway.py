@@ -19,6 +19,7 @@ from ellipsoid_planning.outcome import EXHAUSTED, SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.grid import Grid, grid_columns, most_lines
 from ellipsoid_planning.roadmap.joint_layers import (
     guided_layers,
+    has_few_angles,
     has_fixed_base,
     home_configuration,
     layer_metric,
@@ -258,7 +259,11 @@ class HighwayRoadmap:
                 orientations = random_turn(orientations, dimension, self._random)
         joined = given.neighbour_count(dimension, articulated=len(joints) > 0)
         grid = Grid(columns, neighbours, orientations, joined, joints, self._weight)
-        return Level(local, grid, axis, self._finder(local, box), refinement, box)
+        guides = None
+        if isinstance(self.cspace, ArticulatedCSpace):
+            few = has_few_angles(self.cspace.articulated)
+            guides = None if few else self._guides
+        return Level(local, grid, axis, self._finder(local, box), refinement, box, guides)
 
     def _joint_layers(self, cspace: ArticulatedCSpace, refinement: int) -> Array:
         """The layers of a level for an articulated robot; finer levels go on with other ones."""

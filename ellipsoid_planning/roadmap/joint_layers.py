@@ -37,6 +37,14 @@ def has_fixed_base(cspace: CSpace) -> bool:
     return isinstance(cspace, ArticulatedCSpace) and cspace.articulated.base == FIXED_BASE
 
 
+def has_few_angles(robot: ArticulatedRobot) -> bool:
+    """Whether a product grid of the robot's layers is dense enough to lead everywhere."""
+    simple = all(joint.value_count == 1 for joint in robot.moving_joints)
+    turns = robot.rotates and robot.dimension == 3
+    angles = len(robot.moving_joints) + int(robot.rotates)
+    return simple and not turns and angles <= MOST_GRID_ANGLES
+
+
 def layer_metric(cspace: CSpace) -> Array:
     """What joints count in the distance of layers, (J, METRIC) of kernels.roadmap_metric."""
     if not isinstance(cspace, ArticulatedCSpace):
@@ -56,10 +64,7 @@ def spread_layers(cspace: ArticulatedCSpace, count: int, first: int = 0) -> Arra
     else points ``first``, ``first`` + 1, … of a sequence of low discrepancy.
     """
     robot = cspace.articulated
-    simple = all(joint.value_count == 1 for joint in robot.moving_joints)
-    turns = robot.rotates and robot.dimension == 3
-    angles = len(robot.moving_joints) + int(robot.rotates)
-    if simple and not turns and angles <= MOST_GRID_ANGLES:
+    if has_few_angles(robot):
         rows = _product_layers(robot, count)
     else:
         rows = _quasi_random_layers(cspace, count, first)

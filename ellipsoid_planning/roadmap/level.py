@@ -52,8 +52,12 @@ class Level:
         passages: PassageFinder,
         refinement: int = 0,
         box: Box | None = None,
+        guides: Callable[[Array, Array], Array] | None = None,
     ) -> None:
-        """An empty roadmap on ``grid``, swept along ``axis``."""
+        """An empty roadmap on ``grid``, swept along ``axis``.
+
+        ``guides`` gives layers between two poses, for robots with many joints.
+        """
         self.grid = grid
         self.axis = axis
         self.refinement, self.box = refinement, box
@@ -61,6 +65,7 @@ class Level:
         self._model = cspace.model
         self.passages = passages
         self._taken_in = 0
+        self._guides = guides
         self._burst = _FIRST_TURN
 
     def solve(
@@ -79,23 +84,25 @@ class Level:
         are no poses unless SOLVED.
         """
         start_rows, goal_rows = self._rows(starts), self._rows(goals)
-        self._take_in()
-        self.tables = grown(with_grid(self.tables, self.grid), len(starts))
-        status = roadmap.begin(
-            self._model, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
-        )
-        turn, exhausted = _FIRST_TURN, 0
+        self._take_in(starts, goals)
+        turn, exhausted, layers = _FIRST_TURN, 0, -1
         while True:
+            if layers < 0:
+                layers = self._begin(start_rows, goal_rows, inflation, metric_weight)
             status = self._search(goal_rows, inflation, metric_weight, turn, should_stop)
             if status == roadmap_tables.SOLVED or should_stop():
                 break
             # Passages are looked for in turns with the search, by counts of work and not by the
             # clock, so that the same query finds the same path.
             more = self.passages.advance(turn, should_stop)
-            self._take_in()
+            self._take_in(starts, goals)
             counters = self.tables.counters
             new = counters[roadmap_tables.ENDS] > counters[roadmap_tables.OFFERED]
             if status == roadmap_tables.EXHAUSTED and not new:
+                if self._guides and self.grid.layer_count > layers:
+                    # What was reached before did not see the layers that came with passages.
+                    layers = -1
+                    continue
                 exhausted += 1
                 if not more or (exhausted > _PATIENCE and not thorough):
                     break
@@ -103,6 +110,16 @@ class Level:
         if status != roadmap_tables.SOLVED:
             return status, starts[:0]
         return self._path(goal_rows)
+
+    def _begin(
+        self, start_rows: Array, goal_rows: Array, inflation: float, metric_weight: float
+    ) -> int:
+        """Begin a query, or begin it again: how many layers there are."""
+        self.tables = grown(with_grid(self.tables, self.grid), len(start_rows))
+        roadmap.begin(
+            self._model, self.tables, start_rows, goal_rows, self.axis, inflation, metric_weight
+        )
+        return self.grid.layer_count
 
     def _search(
         self,
@@ -136,12 +153,23 @@ class Level:
             self._burst = max(self._burst // 4, 1) if late else min(2 * self._burst, _LONGEST_TURN)
         return status
 
-    def _take_in(self) -> None:
-        """Enter the passages that were found since the last call."""
+    def _take_in(self, starts: Array, goals: Array) -> None:
+        """Enter the passages that were found since the last call.
+
+        With many joints the layers at their ends become layers of the grid, and so do those
+        between them and the layers of starts and goals: no motion may lead straight from where the
+        search has been to the end of a passage.
+        """
         if self._taken_in == len(self.passages.found):
             return
         for passage in self.passages.found[self._taken_in :]:
-            rows = self._rows(passage.poses[[0, -1]], joins=False)
+            ends = passage.poses[[0, -1]]
+            rows = self._rows(ends, joins=self._guides is not None)
+            if self._guides is not None:
+                for end in ends:
+                    for other in (*starts, *goals):
+                        for row in self._guides(other, end):
+                            self.grid.layer_of(row)
             self.tables = with_passage(
                 with_grid(self.tables, self.grid), rows, passage.length, passage.poses
             )

@@ -24,13 +24,13 @@ class RoadmapParameters:
 
     Attributes:
         layers: orientations of the first level, at most 100,000; 60 in space (the icosahedral
-            group), 36 in the plane.
+            group), 36 in the plane, 300 for robots with joints.
         lines: sweep lines of the first level along the longest side that they stand across;
             10 in space, 24 in the plane.
         axis: the swept axis, 0 for x; by default the axes take turns at each resolution, the last
             one first.
         neighbours: layers that each layer is joined to, at most 1000; 12 in space, 4 in the
-            plane.
+            plane, 20 for robots with joints.
         inflation: weight of the heuristic in the first search, at least 1; larger is greedier.
         refine: how many times an exhausted roadmap is replaced by a finer one; 0 for never.
         anytime: improve the path until the time is over.
@@ -85,7 +85,7 @@ class RoadmapParameters:
     def neighbour_count(self, dimension: int, articulated: bool = False) -> int:
         """Layers that each layer is joined to."""
         if articulated:
-            return self.neighbours or 12
+            return self.neighbours or 20
         return self.neighbours or (4 if dimension == 2 else 12)
 
     def checked_axis(self, dimension: int) -> int:

@@ -1,0 +1,18 @@
+"""Before several workers start: compile the largest kernels once, not once in each of them."""
+
+import subprocess
+import sys
+
+PROGRAM = """
+from ellipsoid_planning.roadmap.highway import HighwayRoadmap
+from ellipsoid_planning.scenario import load_scenario
+for name in ("rabbit-3d-open", "chain-18dof"):
+    HighwayRoadmap(load_scenario(name).cspace()).compile_kernels()
+"""
+
+
+def pytest_sessionstart(session):
+    several = session.config.getoption("numprocesses", None)
+    if several and not hasattr(session.config, "workerinput"):
+        # If it fails, some test will say why.
+        subprocess.run([sys.executable, "-c", PROGRAM], check=False, capture_output=True)

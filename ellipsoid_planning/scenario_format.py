@@ -48,7 +48,9 @@ class ScenarioModel(Block):
     arena: list[Body] = Field(default=[], description="each must contain the whole robot")
     obstacles: list[Body] = Field(default=[])
     robot: RobotBlock
-    clearance: NotNegative = Field(0.0, description="distance that every state and motion keeps")
+    clearance: NotNegative = Field(
+        0.0, description="distance from obstacles and arenas that every state and motion keeps"
+    )
     start: Pose
     goal: Pose
     planner: PlannerBlock | None = None

@@ -89,7 +89,9 @@ class ArticulatedBlock(Block):
     links: Annotated[list[LinkBlock], Field(min_length=1)]
     joints: list[JointBlock] = Field(default=[], description="hang every link but one on another")
     ignore_self_collision: list[Pair] = Field(
-        default=[], description="pairs of links that are never looked at for self-collision"
+        default=[],
+        description="pairs of links that are never looked at for self-collision, besides those "
+        "that share a joint",
     )
 
 

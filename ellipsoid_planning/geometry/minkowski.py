@@ -126,7 +126,7 @@ def check_fits(arena: Ellipsoid, part: Ellipsoid) -> None:
 
     The message names a direction along which the part is wider than the arena, and both widths.
     """
-    _check_dimensions(arena, part)
+    check_same_dimension(arena, part)
     left, stretch, _ = np.linalg.svd(_in_arena_frame(arena, part.matrix))
     if stretch[0] <= 1.0 + _tolerance(arena, part):
         return
@@ -197,13 +197,14 @@ def _tolerance(arena: Ellipsoid, part: Ellipsoid) -> float:
 def _normals(
     first: Ellipsoid, second: Ellipsoid, directions: ArrayLike | int
 ) -> NDArray[np.float64]:
-    _check_dimensions(first, second)
+    check_same_dimension(first, second)
     if isinstance(directions, (int, np.integer)):
         return unit_directions(first.dimension, int(directions))
     return np.atleast_2d(np.asarray(directions, dtype=float))
 
 
-def _check_dimensions(first: Ellipsoid, second: Ellipsoid) -> None:
+def check_same_dimension(first: Ellipsoid, second: Ellipsoid) -> None:
+    """Raise GeometryError if one body is planar and the other spatial."""
     if first.dimension != second.dimension:
         raise GeometryError(
             f"expected two bodies of one dimension, got {first.dimension} and {second.dimension}"

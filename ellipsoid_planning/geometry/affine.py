@@ -65,6 +65,20 @@ def relative_axes(first: Body, second: Body) -> Array:
     return np.stack([largest, middle, least], axis=-1)
 
 
+def ellipsoid_from_factor(centre: Array, factor: Array) -> Ellipsoid:
+    """Return centre + factor (unit ball) for a factor (n, k), k >= n.
+
+    Raises:
+        GeometryError: if it is flat.
+    """
+    axes, lengths, _ = np.linalg.svd(factor, full_matrices=False)
+    if not lengths[-1] > 0.0:
+        raise GeometryError("the ellipsoid is flat: one of its semi-axes is zero")
+    if np.linalg.det(axes) < 0.0:
+        axes[:, -1] = -axes[:, -1]
+    return Ellipsoid.from_semi_axes(lengths, centre, axes)
+
+
 def _norm(matrices: Array) -> Array:
     return np.asarray(np.linalg.svd(matrices, compute_uv=False)[..., 0])
 

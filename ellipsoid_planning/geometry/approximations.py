@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.affine import ellipsoid_from_factor
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.minkowski import check_fits, check_same_dimension
 
@@ -53,7 +54,9 @@ def offset_sum(first: Ellipsoid, second: Ellipsoid) -> Approximation:
     inside.
     """
     stretched = _offset(first, second, 1.0)
-    return Approximation(_from_factor(_sum_centre(first, second), stretched), "inner", "offset")
+    return Approximation(
+        ellipsoid_from_factor(_sum_centre(first, second), stretched), "inner", "offset"
+    )
 
 
 def offset_difference(arena: Ellipsoid, part: Ellipsoid) -> Approximation:
@@ -103,7 +106,9 @@ def kurzhanski_sum(
     name = _member_name(member, side)
     if side == "inner":
         factor = first.matrix + second.matrix @ _alignment(first, second, member)
-        return Approximation(_from_factor(_sum_centre(first, second), factor), "inner", name)
+        return Approximation(
+            ellipsoid_from_factor(_sum_centre(first, second), factor), "inner", name
+        )
     if isinstance(member, str) and member == "volume":
         p = _volume_optimal_sum(_stretches(first, second))
     else:
@@ -146,7 +151,7 @@ def kurzhanski_difference(
 def _outer_sum(first: Ellipsoid, second: Ellipsoid, p: float) -> Ellipsoid:
     check_same_dimension(first, second)
     grown = [math.sqrt(1.0 + 1.0 / p) * first.matrix, math.sqrt(1.0 + p) * second.matrix]
-    return _from_factor(_sum_centre(first, second), np.hstack(grown))
+    return ellipsoid_from_factor(_sum_centre(first, second), np.hstack(grown))
 
 
 def _inner_difference(arena: Ellipsoid, part: Ellipsoid, m: float) -> Ellipsoid:
@@ -163,12 +168,12 @@ def _inner_difference(arena: Ellipsoid, part: Ellipsoid, m: float) -> Ellipsoid:
             "difference is not flat"
         )
     centre = arena.centre - part.centre
-    return _from_factor(centre, arena.matrix @ (left * np.sqrt(squares)))
+    return ellipsoid_from_factor(centre, arena.matrix @ (left * np.sqrt(squares)))
 
 
 def _outer_difference(arena: Ellipsoid, part: Ellipsoid, factor: Array, name: str) -> Approximation:
     centre = arena.centre - part.centre
-    return Approximation(_from_factor(centre, factor), "outer", name)
+    return Approximation(ellipsoid_from_factor(centre, factor), "outer", name)
 
 
 def _offset(first: Ellipsoid, second: Ellipsoid, sign: float) -> Array:
@@ -253,16 +258,6 @@ def _volume_optimal_difference(stretches: Array) -> float:
 
 def _stretches(first: Ellipsoid, second: Ellipsoid) -> Array:
     return _seen_by_second(first, second)[1]
-
-
-def _from_factor(centre: Array, factor: Array) -> Ellipsoid:
-    """The image of the unit ball under factor (n, n) or (n, 2 n)."""
-    axes, lengths, _ = np.linalg.svd(factor, full_matrices=False)
-    if not lengths[-1] > 0.0:
-        raise GeometryError("the approximation is flat: the bodies touch along a direction")
-    if np.linalg.det(axes) < 0.0:
-        axes[:, -1] = -axes[:, -1]
-    return Ellipsoid.from_semi_axes(lengths, centre, axes)
 
 
 def _sum_centre(first: Ellipsoid, second: Ellipsoid) -> Array:

@@ -117,7 +117,8 @@ def _mesh(frame: OffsetFrame, rings: int, sectors: int) -> Mesh:
     flat = np.sin(polar)[..., None] * azimuth
     upper = np.concatenate([flat, np.cos(polar)[..., None]], axis=-1)
     lower = upper[:-1] * [1.0, 1.0, -1.0]
-    unit = [[[0.0, 0.0, 1.0]], upper.reshape(-1, 3), [[0.0, 0.0, -1.0]], lower.reshape(-1, 3)]
+    pole = np.array([[0.0, 0.0, 1.0]])
+    unit = [pole, upper.reshape(-1, 3), -pole, lower.reshape(-1, 3)]
     top = 1 + np.arange(rings * sectors).reshape(rings, sectors)
     bottom = top[-1, -1] + 2 + np.arange((rings - 1) * sectors).reshape(rings - 1, sectors)
     faces = np.concatenate(

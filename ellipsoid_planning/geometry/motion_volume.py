@@ -80,8 +80,8 @@ def contained_motions(
     check_same_dimension(outer, inner)
     if rotations is not None:
         placed = rotations.rotations @ inner.matrix
-        exact = bool(np.all(_roll(outer, placed)))
-        return _over(difference_volume(outer, placed), rotations, exact=exact)
+        rolls = bool(np.all(_roll(outer, placed)))
+        return _over(difference_volume(outer, placed), rotations, exact=rolls)
     if rolls_at_every_orientation(outer.semi_axes, inner.semi_axes):
         exact = containment_formula(outer.semi_axes, inner.semi_axes)
         return MotionVolume(float(exact), "closed form")

@@ -98,7 +98,7 @@ def all_rotations(dimension: int, count: int) -> RotationRange:
         dimension: 2 or 3.
         count: points an angle, evenly spaced in headings, alpha and gamma over half a turn.
     """
-    angles = np.arange(count) * (math.pi / count)
+    angles = np.asarray(np.arange(count) * (math.pi / count), dtype=float)
     if dimension == 2:
         return RotationRange(_planar(angles), np.full(count, 2.0 * math.pi / count))
     heights, weights = gauss(count)

@@ -19,27 +19,28 @@ TERMS = 10
 def uniaxial_mean_curvature(radius: Array, height: Array) -> Array:
     """Return M for semi-axes (radius, radius, height), arrays (...); eq. (5.69), (5.70)."""
     ratio = height / radius
-    return np.asarray(2.0 * math.pi * radius * (ratio + arc_quotient(ratio**2 - 1.0)))
+    return np.asarray(2.0 * math.pi * radius * (ratio + arc_quotient(ratio)))
 
 
 def uniaxial_surface_area(radius: Array, height: Array) -> Array:
     """Return F for semi-axes (radius, radius, height), arrays (...)."""
     ratio = height / radius
     # log((1 + e) / ratio) / e for the oblate, arccos(1 / ratio) / e for the prolate.
-    excess = (1.0 / ratio - 1.0) * (1.0 / ratio + 1.0)
-    part = ratio * arc_quotient(excess)
+    part = ratio * arc_quotient(1.0 / ratio)
     return np.asarray(2.0 * math.pi * radius**2 * (1.0 + part))
 
 
-def arc_quotient(excess: Array) -> Array:
-    """Return arccosh(sqrt(1 + x)) / sqrt(x), for x < 0 arccos(sqrt(1 + x)) / sqrt(-x); x > -1.
+def arc_quotient(cosine: Array) -> Array:
+    """Return arccos(c) / sqrt(1 - c^2) for c > 0, and for c > 1 arccosh(c) / sqrt(c^2 - 1).
 
-    It is 1 at x = 0: asinh(sqrt x) / sqrt x and asin(sqrt -x) / sqrt(-x) are one power series.
+    It is 1 at c = 1: with x = c^2 - 1, asinh(sqrt x) / sqrt x and asin(sqrt -x) / sqrt(-x) are
+    one power series.
     """
-    x = np.asarray(excess, dtype=float)
+    c = np.asarray(cosine, dtype=float)
+    x = (c - 1.0) * (c + 1.0)
     root = np.sqrt(np.abs(x))
     safe = np.where(root > 0.0, root, 1.0)
-    outside = np.where(x > 0.0, np.arcsinh(root), np.arcsin(np.minimum(root, 1.0))) / safe
+    outside = np.where(x > 0.0, np.arcsinh(root), np.arctan2(root, c)) / safe
     return np.asarray(np.where(root > NEAR, outside, _series(np.where(root > NEAR, 0.0, x))))
 
 

@@ -30,7 +30,7 @@ class ArticulatedSampling:
         self._uniform = uniform
         self._random = np.random.default_rng(seed)
         robot = cspace.articulated
-        self._kind = _kind(robot)
+        self._kind = base_kind(robot)
         count = kernels.BASE_NUMBERS + kernels.JOINT_NUMBERS * len(robot.moving_joints)
         self._numbers = np.empty((_ATTEMPTS, count))
         self._origin = cspace.poses(np.zeros(robot.configuration_size))[0]
@@ -70,7 +70,8 @@ class ArticulatedSampling:
         return bool(found)
 
 
-def _kind(robot: ArticulatedRobot) -> int:
+def base_kind(robot: ArticulatedRobot) -> int:
+    """Which kind of base a robot has, in the words of kernels.articulated_sampling."""
     if robot.base == FIXED_BASE:
         return kernels.IMMOBILE
     if not robot.rotates:

@@ -76,7 +76,7 @@ def _draw_joint(joint, near, room, numbers, row):
 
 
 @kernel
-def _draw_turns(joints, kind, near, distance, numbers, row):
+def draw_turns(joints, kind, near, distance, numbers, row):
     """Write everything of a row but its position, and return the distance left for that.
 
     The distance is split at random between position, base and joints (all splits alike).
@@ -134,7 +134,7 @@ def draw_articulated(scene, kinematics, kind, near, distance, uniform, numbers, 
     point = np.zeros(3)
     for attempt in range(numbers.shape[0]):
         row = numbers[attempt]
-        room = _draw_turns(joints, kind, near, distance, row, out)
+        room = draw_turns(joints, kind, near, distance, row, out)
         if kind == IMMOBILE:
             out[0], out[1], out[2] = near[0], near[1], near[2]
             if row_is_free(scene, kinematics, out, frames, placed, order, body):

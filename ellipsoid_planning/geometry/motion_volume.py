@@ -59,7 +59,7 @@ def meeting_motions(
     if rotations is None:
         exact = principal_formula(fixed.semi_axes, moving.semi_axes)
         return MotionVolume(float(exact), "closed form")
-    volumes = sum_volume(fixed.matrix, rotations.rotations @ moving.matrix)
+    volumes = sum_volume(fixed.matrix, rotations.turned(moving))
     return _over(volumes, rotations, exact=True)
 
 
@@ -79,7 +79,7 @@ def contained_motions(
     """
     check_same_dimension(outer, inner)
     if rotations is not None:
-        placed = rotations.rotations @ inner.matrix
+        placed = rotations.turned(inner)
         rolls = bool(np.all(_roll(outer, placed)))
         return _over(difference_volume(outer, placed), rotations, exact=rolls)
     if rolls_at_every_orientation(outer.semi_axes, inner.semi_axes):

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry.directions import unit_directions
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.orientation import check_rotation
 from ellipsoid_planning.geometry.quadrature import gauss
 
@@ -31,6 +31,19 @@ class RotationRange:
 
     rotations: Array
     weights: Array
+
+    def turned(self, body: Ellipsoid) -> Array:
+        """Return the matrices (m, n, n) of a body after each rotation.
+
+        Raises:
+            GeometryError: if the rotations are of another dimension.
+        """
+        n = self.rotations.shape[-1]
+        if body.dimension != n:
+            raise GeometryError(
+                f"expected rotations of dimension {body.dimension}, got dimension {n}"
+            )
+        return np.asarray(self.rotations @ body.matrix)
 
     @property
     def measure(self) -> float:
@@ -79,16 +92,26 @@ def angle_range(largest: float, count: int = 16, around: ArrayLike | None = None
     if not 0.0 <= largest <= math.pi:
         raise GeometryError(f"expected a largest angle within [0, pi], got {largest}")
     points, weights = gauss(count)
-    angles, axes = largest * points, unit_directions(3, 2 * count**2)
+    angles, axes = largest * points, _axes(count)
     radial = largest * weights * 2.0 * (1.0 - np.cos(angles))
     skew = np.zeros((len(axes), 3, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         skew[:, i, j], skew[:, j, i] = -axes[:, k], axes[:, k]
     sine, versine = np.sin(angles)[:, None, None, None], 1.0 - np.cos(angles)[:, None, None, None]
     rotations = np.eye(3) + sine * skew + versine * (skew @ skew)
-    each = np.broadcast_to(radial[:, None] * (4.0 * math.pi / len(axes)), rotations.shape[:2])
+    each = radial[:, None] * np.repeat(weights, 2 * count) * (2.0 * math.pi / count)
     base = np.eye(3) if around is None else check_rotation(around, 3)
     return RotationRange(rotations.reshape(-1, 3, 3) @ base, each.reshape(-1))
+
+
+def _axes(count: int) -> Array:
+    """Unit vectors (2 count^2, 3) at Gauss heights, 2 count evenly around each."""
+    heights = 2.0 * gauss(count)[0] - 1.0
+    turns = np.arange(2 * count) * (math.pi / count)
+    flat = np.sqrt(1.0 - heights**2)[:, None]
+    z = np.broadcast_to(heights[:, None], (count, 2 * count))
+    around = np.stack([flat * np.cos(turns), flat * np.sin(turns), z], axis=-1)
+    return np.asarray(around.reshape(-1, 3))
 
 
 def all_rotations(dimension: int, count: int) -> RotationRange:

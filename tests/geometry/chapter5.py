@@ -1,5 +1,6 @@
 """Slow twins of chapter 5: quadrature on spheres, and random bodies as the thesis draws them."""
 
+import itertools
 import math
 
 import numpy as np
@@ -85,8 +86,5 @@ def mean_length_twin(lengths):
         return 4.0 * math.sqrt(q) * ellipe(1.0 - p / q) if q > 0.0 else 0.0
 
     decades = [0.0, *10.0 ** np.arange(-12.0, 0.5, 0.5)]
-    parts = [
-        quad(ring, a, b, epsabs=0.0, epsrel=1e-13)[0]
-        for a, b in zip(decades[:-1], decades[1:], strict=True)
-    ]
+    parts = [quad(ring, a, b, epsabs=0.0, epsrel=1e-13)[0] for a, b in itertools.pairwise(decades)]
     return 2.0 * math.fsum(parts) / (4.0 * math.pi)

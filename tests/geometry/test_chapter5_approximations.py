@@ -290,7 +290,7 @@ def test_a_difference_that_hardly_exists_keeps_its_members(room):
     for side in ("inner", "outer"):
         body = kurzhanski_difference(arena, part, "volume", side).ellipsoid
         assert 0.0 < np.min(body.semi_axes) <= 1.01 * room
-    with pytest.raises(GeometryError, match="too large|not between"):
+    with pytest.raises(GeometryError, match="not between"):
         gaussian_difference(arena, part)
 
 

@@ -1,5 +1,6 @@
 """Thesis 5.4.1, 5.4.2: perimeter, surface and total mean curvature; Figs. 5.5 to 5.8."""
 
+import itertools
 import math
 from decimal import Decimal, getcontext
 
@@ -70,7 +71,7 @@ def test_perimeter_is_exact_for_circles_and_needles(axes):
 
 @pytest.mark.parametrize("axes", SHAPES)
 def test_surface_and_mean_curvature_match_slow_quadrature(axes):
-    a, b, c = axes
+    _a, _b, _c = axes
     scale = max(axes)
     unit = np.array(axes) / scale
     mean = 4.0 * math.pi * mean_length_twin(unit) * scale
@@ -127,7 +128,7 @@ def test_surface_matches_legendre_integrals_whose_w_is_the_parameter():
 
 
 @pytest.mark.parametrize(
-    "axes, value",
+    ("axes", "value"),
     # B. C. Carlson, Numerical computation of real or complex elliptic integrals (1995).
     [((0, 16, 16), math.pi), ((2, 3, 4), 1.7255030280692), ((0, 0.0796, 4), 1.0284758090288)],
 )
@@ -152,7 +153,7 @@ def test_uniaxial_formulas_are_stable_across_the_sphere(ratio):
 
 
 @pytest.mark.parametrize(
-    "function, n", [(perimeter_bounds, 2), (surface_bounds, 3)] + [(mean_curvature_bounds, 3)]
+    ("function", "n"), [(perimeter_bounds, 2), (surface_bounds, 3), (mean_curvature_bounds, 3)]
 )
 def test_bounds_bound_from_spheres_to_needles_and_discs(function, n):
     rng = np.random.default_rng(7)
@@ -183,7 +184,7 @@ def test_legendres_series_falls_to_the_perimeter():
     """(5.43) with its binomials squared; (5.45) is its beginning, exponents corrected."""
     axes = [4.0, 2.5]
     sums = [float(legendre_perimeter(axes, k)) for k in range(60)]
-    assert all(a >= b for a, b in zip(sums, sums[1:], strict=False))
+    assert all(a >= b for a, b in itertools.pairwise(sums))
     assert abs(sums[-1] / float(perimeter(axes)) - 1.0) < 1e-14
     assert sums[2] == pytest.approx(float(perimeter_bounds(axes)["legendre"]), rel=1e-15)
 
@@ -228,7 +229,9 @@ def test_a_million_perimeters_are_one_call():
     assert surface_area(axes)[1, 2, 3] == surface_area(axes[1, 2, 3])
 
 
-@pytest.mark.parametrize("function, n", [(perimeter, 2), (surface_area, 3), (surface_bounds, 3)])
+@pytest.mark.parametrize(
+    ("function", "n"), [(perimeter, 2), (surface_area, 3), (surface_bounds, 3)]
+)
 @pytest.mark.parametrize("wrong", [0.0, -1.0, math.nan, math.inf])
 def test_axes_must_be_positive(function, n, wrong):
     with pytest.raises(GeometryError, match="positive semi-axes"):

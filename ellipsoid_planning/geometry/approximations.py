@@ -22,14 +22,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry.affine import ellipsoid_from_factor
+from ellipsoid_planning.geometry.affine import ellipsoid_from_factor, relative_axes
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.minkowski import check_fits, check_same_dimension
+from ellipsoid_planning.geometry.optimal_members import (
+    greatest_inner_difference,
+    least_outer_sum,
+)
 
 Array = NDArray[np.float64]
 Side = Literal["inner", "outer"]
 Member = Literal["trace", "volume"]
-BISECTIONS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +113,7 @@ def kurzhanski_sum(
             ellipsoid_from_factor(_sum_centre(first, second), factor), "inner", name
         )
     if isinstance(member, str) and member == "volume":
-        p = _volume_optimal_sum(_stretches(first, second))
+        p = float(least_outer_sum(relative_axes(first, second)))
     else:
         p = _ratio(first, second, member)
     return Approximation(_outer_sum(first, second, p), "outer", name)
@@ -142,7 +145,7 @@ def kurzhanski_difference(
         factor = arena.matrix - part.matrix @ _alignment(arena, part, member)
         return _outer_difference(arena, part, factor, name)
     if isinstance(member, str) and member == "volume":
-        m = _volume_optimal_difference(_stretches(arena, part))
+        m = float(greatest_inner_difference(relative_axes(arena, part)))
     else:
         m = 1.0 / _ratio(arena, part, member)
     return Approximation(_inner_difference(arena, part, m), "inner", name)
@@ -227,37 +230,6 @@ def _ratio(first: Ellipsoid, second: Ellipsoid, member: Member | ArrayLike) -> f
     direction = _direction(member, first.dimension)
     lengths = [np.linalg.norm(direction @ body.matrix) for body in (first, second)]
     return float(lengths[0] / lengths[1])
-
-
-def _volume_optimal_sum(stretches: Array) -> float:
-    """The root of sum 1 / (s^2 + p) = n / (p (p + 1)), between the least and greatest s."""
-    low, high = math.log(float(np.min(stretches))), math.log(float(np.max(stretches)))
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        p = math.exp(middle)
-        # Both sides times p (p + 1), so that nothing overflows.
-        if float(np.sum((p + 1.0) / (stretches**2 / p + 1.0))) < len(stretches):
-            low = middle
-        else:
-            high = middle
-    return math.exp(0.5 * (low + high))
-
-
-def _volume_optimal_difference(stretches: Array) -> float:
-    """The root of sum 1 / (m (m s^2 - 1)) = n / (1 - m), between 1 / min(s)^2 and 1."""
-    low, high = float(np.min(stretches)) ** -2.0, 1.0
-    for _ in range(BISECTIONS):
-        m = 0.5 * (low + high)
-        slack = m * stretches**2 - 1.0
-        if np.all(slack > 0.0) and (1.0 - m) * float(np.sum(1.0 / (m * slack))) < len(stretches):
-            high = m
-        else:
-            low = m
-    return 0.5 * (low + high)
-
-
-def _stretches(first: Ellipsoid, second: Ellipsoid) -> Array:
-    return _seen_by_second(first, second)[1]
 
 
 def _sum_centre(first: Ellipsoid, second: Ellipsoid) -> Array:

@@ -66,7 +66,8 @@ class FreeMotionVolume:
 
     Attributes:
         value: contained less all blocked, at least 0.
-        kind: "exact" if the conditions hold, else "lower".
+        kind: "exact" if the conditions hold, up to the error of `contained` where that is no
+            closed form; else "lower".
         upper: an upper bound; equal to `value` if that is exact.
         contained: the motions that keep the robot in the arena.
         blocked: the motions that meet each obstacle, in order; 0 for obstacles outside the arena.

@@ -7,6 +7,8 @@ the exact volume. The exponents of (5.78) and (5.83) are n, not 1/n.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,7 @@ from ellipsoid_planning.geometry.affine import (
     relative_axes,
 )
 from ellipsoid_planning.geometry.bound import Bound, Kind
+from ellipsoid_planning.geometry.optimal_members import least_outer_sum
 from ellipsoid_planning.geometry.sum_volume import UNIT_BALL, sum_volume
 
 Array = NDArray[np.float64]
@@ -33,7 +36,8 @@ def sum_volume_bounds(first: Body, second: Body) -> dict[str, Bound]:
     - estimate: Ramanujan's L (5.92), or Thomsen's F (5.93) and M_est (5.94);
     - in space also lower_exact_surface, upper_exact_surface (5.86, 5.87): exact F, bounds of M;
       upper_cauchy_schwarz: as upper with F_ub1 (5.75) alone;
-    - offset_ellipsoid (5.23), lower: the volume of the ellipsoid with semi-axes a' + r.
+    - offset_ellipsoid (5.23), lower: the volume of the ellipsoid with semi-axes a' + r;
+      gaussian_ellipsoid (5.33) and kurzhanski_ellipsoid, the least of its family, upper.
 
     Args:
         first: an `Ellipsoid`, or matrices A1 (..., n, n).
@@ -56,9 +60,28 @@ def sum_volume_bounds(first: Body, second: Body) -> dict[str, Bound]:
     low, high = values["lower"].value, values["upper"].value
     values["arithmetic_mean"] = Bound(0.5 * (low + high), "estimate", "(5.90)")
     values["geometric_mean"] = Bound(np.sqrt(low * high), "estimate", "(5.91)")
-    offset = ball * det_two * np.prod(axes + 1.0, axis=-1)
-    values["offset_ellipsoid"] = Bound(np.asarray(offset), "lower", "(5.23)")
-    return values
+    unit = ball * det_two
+    return values | {name: _scaled(bound, unit) for name, bound in _ellipsoids(axes).items()}
+
+
+def _ellipsoids(axes: Array) -> dict[str, Bound]:
+    """Products of semi-axes of approximating ellipsoids where the second body is the unit ball."""
+    p = least_outer_sum(axes)[..., None]
+    return {
+        "offset_ellipsoid": Bound(np.prod(axes + 1.0, axis=-1), "lower", "(5.23)"),
+        "gaussian_ellipsoid": Bound(
+            np.prod(math.sqrt(2.0) * np.hypot(axes, 1.0), axis=-1), "upper", "(5.33)"
+        ),
+        "kurzhanski_ellipsoid": Bound(
+            np.prod(np.sqrt(1.0 + p) * np.hypot(axes / np.sqrt(p), 1.0), axis=-1),
+            "upper",
+            "Kurzhanski",
+        ),
+    }
+
+
+def _scaled(bound: Bound, factor: Array) -> Bound:
+    return Bound(np.asarray(bound.value * factor), bound.kind, bound.source)
 
 
 def _plane(axes: Array) -> dict[str, tuple[Array, Kind, str]]:

@@ -314,8 +314,9 @@ def test_bad_requests_are_refused():
             kurzhanski_sum(arena, part, wrong)
     with pytest.raises(GeometryError, match="inner"):
         kurzhanski_sum(arena, part, "trace", "both")
-    with pytest.raises(GeometryError, match="not between"):
-        kurzhanski_difference(arena, ball(0.95, 3), [1.0, 0.0, 0.0])
+    for member in ([1.0, 0.0, 0.0], "trace"):
+        with pytest.raises(GeometryError, match="not between"):
+            kurzhanski_difference(arena, ball(0.95, 3), member)
 
 
 def test_random_rotations_are_rotations():

@@ -10,12 +10,14 @@ from scipy.spatial import ConvexHull
 
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry import Ellipsoid
+from ellipsoid_planning.geometry.approximations import kurzhanski_difference
 from ellipsoid_planning.geometry.boundary_mesh import (
     difference_mesh,
     difference_polygon,
     sum_mesh,
     sum_polygon,
 )
+from ellipsoid_planning.geometry.difference_bounds import difference_volume_bounds
 from ellipsoid_planning.geometry.difference_volume import difference_volume
 from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.geometry.minkowski import check_fits, difference_contains
@@ -32,6 +34,7 @@ from tests.geometry.chapter5 import (
     random_rotation,
     steiner_twin,
 )
+from tests.oracles import combinations
 
 seeds = st.integers(0, 2**32 - 1)
 dimensions = st.sampled_from([2, 3])
@@ -104,6 +107,24 @@ def test_meshes_lie_on_the_boundary_and_are_closed(seed):
     away = mesh.vertices - (first.centre - second.centre)
     outside = mesh.vertices + 1e-8 * away / np.linalg.norm(away, axis=1)[:, None]
     assert not np.any(difference_contains(first, second, outside))
+
+
+@settings(deadline=None, max_examples=20)
+@given(seeds)
+def test_meshes_of_needles_and_discs_lie_on_the_boundary(seed):
+    rng = np.random.default_rng(seed)
+    axes = 10.0 ** rng.uniform(-6.0, 0.0, (2, 3))
+    first, second = (Ellipsoid.from_semi_axes(a, rotation=random_rotation(rng, 3)) for a in axes)
+    vertices = sum_mesh(first, second, 4, 8).vertices
+    # The separating family's value is 1 on the boundary of the sum.
+    count = len(vertices)
+    matrices = [np.broadcast_to(body.matrix, (count, 3, 3)) for body in (first, second)]
+    lengths = np.array([body.semi_axes for body in (first, second)])
+    if lengths.max() / lengths.min() < 1e4:  # the twin itself needs some digits
+        value, _ = combinations(vertices, *matrices, 60)
+        np.testing.assert_allclose(value, 1.0, rtol=1e-6)
+    u = unit_directions(3, 3000)
+    assert np.all(vertices @ u.T <= (first.support(u) + second.support(u)) * (1.0 + 1e-10))
 
 
 def test_mesh_vertices_have_the_right_count_and_volume():
@@ -212,6 +233,25 @@ def test_volumes_with_a_rim_converge_and_match_slow_twins(arena, part):
     assert radial == pytest.approx(volume, rel=4e-3)
 
 
+@settings(deadline=None, max_examples=60)
+@given(seeds, dimensions)
+def test_bounds_of_differences_bound(seed, dimension):
+    rng = np.random.default_rng(seed)
+    arena, part = fitting_pair(rng, dimension)
+    bounds = difference_volume_bounds(arena, part)
+    exact = float(bounds["exact"])
+    for name, bound in bounds.items():
+        if bound.kind in ("lower", "exact"):
+            assert float(bound) <= exact * (1 + 1e-9), name
+        if bound.kind in ("upper", "exact"):
+            assert float(bound) >= exact * (1 - 1e-9), name
+    inner = kurzhanski_difference(arena, part, "volume").ellipsoid
+    unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+    volume = unit * float(np.prod(inner.semi_axes))
+    assert float(bounds["kurzhanski_ellipsoid"]) == pytest.approx(volume, rel=1e-7)
+    assert rolls_freely(arena, part).holds == (bounds["steiner"].kind == "exact")
+
+
 def test_the_volume_is_continuous_where_rolling_ends():
     # The least radius of curvature of (4, 2) is 1.
     sizes = np.array([1.0 - 1e-6, 1.0, 1.0 + 1e-6])
@@ -244,7 +284,7 @@ def test_an_empty_difference_has_no_boundary_and_no_volume():
     arena = Ellipsoid.from_semi_axes([5.0, 4.0, 2.0], name="hall")
     part = Ellipsoid.from_semi_axes([1.0, 1.0, 2.5], name="crate")
     assert float(difference_volume(arena, part)) == 0.0
-    for build in (difference_mesh, check_fits):
+    for build in (difference_mesh, difference_volume_bounds, check_fits):
         with pytest.raises(GeometryError) as caught:
             build(arena, part)
         for piece in ("hall", "crate", "1.0]", "2.5 exceeds the arena's 2 by 0.5"):

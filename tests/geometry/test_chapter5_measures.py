@@ -6,6 +6,7 @@ from decimal import Decimal, getcontext
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.special import ellipe, ellipeinc, ellipkinc
 
 from ellipsoid_planning.errors import GeometryError
@@ -171,6 +172,35 @@ def test_bounds_bound_from_spheres_to_needles_and_discs(function, n):
             assert error.min() > -1e-13, name
         # All are exact for spheres.
         assert np.max(np.abs(error[:200])) < 1e-8, name
+
+
+@pytest.mark.parametrize("axes", [(3.0, 2.0, 1.2), (5.0, 4.9, 0.3), (2.0, 2.0, 1.999)])
+def test_the_thesis_integral_bounds_of_mean_curvature(axes):
+    """(5.58)-(5.67), a >= b >= c, prefactor 2 pi a b c, alpha' above and alpha'' below."""
+    a, b, c = axes
+    alpha = {1: b**2 - c**2, 2: a**2 * (b**2 - c**2), 3: b**2 * (a**2 - c**2), 4: a**2 - c**2}
+    beta = {1: a**2 + c**2, 2: a**2 * c**2, 3: b**2 * c**2, 4: b**2 + c**2}
+    root = math.sqrt(beta[2] * beta[3])
+
+    def product(t):
+        return math.sqrt((alpha[2] * t * t + beta[2]) * (alpha[3] * t * t + beta[3]))
+
+    slopes = {
+        "integral_upper": math.sqrt(alpha[2] * alpha[3]),
+        "integral_lower": (alpha[2] * beta[3] + alpha[3] * beta[2]) / (2.0 * root),
+    }
+    roots = {name: lambda t, s=slope: s * t * t + root for name, slope in slopes.items()}
+    bounds = mean_curvature_bounds(axes)
+    for name, middle in (("exact", product), *roots.items()):
+
+        def integrand(t, middle=middle):
+            return sum(
+                (alpha[i] * t * t + beta[i]) / (alpha[j] * t * t + beta[j] + middle(t))
+                for i, j in ((1, 2), (4, 3))
+            )
+
+        value = 2.0 * math.pi * a * b * c * quad(integrand, 0.0, 1.0, epsabs=0, epsrel=1e-13)[0]
+        assert float(bounds[name]) == pytest.approx(value, rel=1e-12), name
 
 
 def test_orders_of_axes_do_not_matter():

@@ -38,8 +38,8 @@ def difference_volume(arena: Body, part: Body, order: int = DEFAULT_ORDER) -> Ar
     Args:
         arena: an `Ellipsoid`, or matrices (..., n, n) of ellipsoids A (unit ball).
         part: likewise; the leading shapes broadcast. Centres do not matter.
-        order: Gauss points a direction, where the part does not roll freely; 32 give ten
-            digits and more for axis ratios up to ten.
+        order: Gauss points a direction, where the part does not roll freely; 32 give twelve
+            digits and more for axis ratios up to 1e6.
 
     Raises:
         GeometryError: if the dimensions differ or a body is flat.

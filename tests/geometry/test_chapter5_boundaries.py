@@ -252,6 +252,15 @@ def test_bounds_of_differences_bound(seed, dimension):
     assert rolls_freely(arena, part).holds == (bounds["steiner"].kind == "exact")
 
 
+@pytest.mark.parametrize(
+    "arena",
+    [[1e3, 1.5], [1e6, 30.0], [1e3, 3.0, 1.5], [1e5, 1e3, 20.0], [1e6, 2.0, 2.0], [10, 9, 1.0001]],
+)
+def test_quadrature_over_a_rim_converges_for_needles_and_discs(arena):
+    volumes = [float(difference_volume(np.diag(arena), np.eye(len(arena)), k)) for k in (32, 96)]
+    assert volumes[0] == pytest.approx(volumes[1], rel=1e-12)
+
+
 def test_the_volume_is_continuous_where_rolling_ends():
     # The least radius of curvature of (4, 2) is 1.
     sizes = np.array([1.0 - 1e-6, 1.0, 1.0 + 1e-6])

@@ -13,7 +13,7 @@ from ellipsoid_planning.cspace.articulated_sampling import base_kind
 from ellipsoid_planning.cspace.estimate import COPIES
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.kernels import articulated_sampling, free_length, sampling
+from ellipsoid_planning.kernels import articulated_sampling, free_length, kinematics, sampling
 from ellipsoid_planning.robots.joint import BALL
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ class LayerSequence:
         row[:n] = 0.5 * (world.low + world.high)
         if isinstance(self._cspace, ArticulatedCSpace):
             kernel = articulated_sampling.draw_turns
-            joints = articulated_sampling.joint_rows(self._cspace.kinematics)
+            joints = kinematics.joint_rows(self._cspace.kinematics)
             kernel(joints, self._kind, self._near, -1.0, u, row)
         elif self._kind == sampling.SPATIAL:
             row[3:7] = sampling.random_rotation(u[0], u[1], u[2])

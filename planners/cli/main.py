@@ -14,6 +14,7 @@ from planners.cli.figure import figure
 from planners.cli.import_urdf import urdf
 from planners.cli.interrupt import end_on_interrupt
 from planners.cli.joints import joints
+from planners.cli.measure import measure
 from planners.cli.plan import plan
 from planners.cli.scenarios import scenarios
 from planners.cli.schema import schema
@@ -65,7 +66,18 @@ def _root(
     """
 
 
-for command in (plan, show, figure, scenarios, joints, family, verify, benchmark, schema):
+for command in (
+    plan,
+    show,
+    figure,
+    scenarios,
+    joints,
+    family,
+    measure,
+    verify,
+    benchmark,
+    schema,
+):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
 
 imports = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -38,6 +38,19 @@ def working(message: str) -> Iterator[None]:
 
     with Console(stderr=True).status(message):
         yield
+
+
+@contextmanager
+def stages(message: str) -> Iterator[Callable[[str], None]]:
+    """As `working`, with a function that replaces the message; only a terminal shows those."""
+    if not sys.stderr.isatty():
+        say(f"{message} ...")
+        yield lambda _: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(message) as status:
+        yield status.update
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from planners.cli.import_urdf import urdf
 from planners.cli.interrupt import end_on_interrupt
 from planners.cli.joints import joints
 from planners.cli.measure import measure
+from planners.cli.minkowski import minkowski
 from planners.cli.plan import plan
 from planners.cli.scenarios import scenarios
 from planners.cli.schema import schema
@@ -74,6 +75,7 @@ for command in (
     joints,
     family,
     measure,
+    minkowski,
     verify,
     benchmark,
     schema,

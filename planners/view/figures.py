@@ -44,7 +44,7 @@ def figure(source: Scenario | PlanResult, output: str | Path) -> Path:
     Raises:
         EllipsoidPlanningError: if the format is unknown or the file cannot be written.
     """
-    _check_format(Path(output))
+    check_format(Path(output))
     drawn = draw(source)
     content = io.BytesIO()
     drawn.savefig(content, format=Path(output).suffix[1:].lower(), dpi=DOTS_PER_INCH)
@@ -133,7 +133,8 @@ def _panel_height(view: LayerSlice | JointSlice) -> float:
     return float(np.clip(0.44 * WIDTH * up / across + 1.6, 3.8, 6.6)) + title
 
 
-def _check_format(output: Path) -> None:
+def check_format(output: Path) -> None:
+    """Raise EllipsoidPlanningError unless matplotlib can write the format of a file's suffix."""
     from matplotlib.backend_bases import FigureCanvasBase
 
     known = FigureCanvasBase.get_supported_filetypes()

@@ -81,7 +81,7 @@ def draw(summary: MinkowskiSummary) -> Figure:
         draw_shrunk(panels[1], summary)
         draw_approximations(panels[2], summary)
     else:
-        camera = _camera(summary)
+        camera = camera_of(summary)
         draw_solid(panels[0], summary, camera)
         draw_silhouettes(panels[1], summary, camera)
     draw_bounds(drawn.add_subplot(grid[1, :]), summary)
@@ -96,7 +96,7 @@ def _panel_height(summary: MinkowskiSummary, columns: int) -> float:
         points = np.concatenate([body - reach, body + reach, summary.first.surface_points(64)])
         size = np.ptp(points, axis=0)
     else:
-        camera = _camera(summary)
+        camera = camera_of(summary)
         solid = [_surface(summary).reshape(-1, 3), summary.first.surface_points(500)]
         size = np.ptp(camera.axes(np.concatenate(solid))[:, :2], axis=0)
     return float(np.clip(0.8 * WIDTH / columns * size[1] / size[0], 1.2, 5.0)) + 1.5
@@ -250,7 +250,8 @@ def _surface(summary: MinkowskiSummary) -> Array:
     return mesh.vertices[mesh.triangles[:, [0, 1, 2, 2]]]
 
 
-def _camera(summary: MinkowskiSummary) -> Camera:
+def camera_of(summary: MinkowskiSummary) -> Camera:
+    """Return the camera for `draw_solid` and `draw_silhouettes`."""
     bodies = [summary.first] if summary.difference else []
     points = [_surface(summary).reshape(-1, 3), *(body.surface_points(500) for body in bodies)]
     return frame(np.concatenate(points), float(AZIMUTH))

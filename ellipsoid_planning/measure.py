@@ -21,7 +21,13 @@ from ellipsoid_planning.cspace.free_fraction import (
     layer_fraction,
 )
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.roadmap.openings import Opening, least_width, narrowest_openings, until
+from ellipsoid_planning.roadmap.openings import (
+    Opening,
+    least_width,
+    load_kernels,
+    narrowest_openings,
+    until,
+)
 from ellipsoid_planning.scenario import Scenario
 
 LAYER_LINES = 20_000
@@ -154,8 +160,10 @@ def measure(
     spent["closed_form"] = time.perf_counter() - then
     say("Looking for narrow openings")
     then = time.perf_counter()
-    moves = scenario.robot.base_size > 0
-    openings = narrowest_openings(cspace, OPENINGS, until(OPENINGS_TIME)) if moves else []
+    openings: list[Opening] = []
+    if scenario.robot.base_size > 0:
+        load_kernels(cspace)
+        openings = narrowest_openings(cspace, OPENINGS, until(OPENINGS_TIME))
     width = least_width(cspace)
     spent["openings"] = time.perf_counter() - then
     spent = {"total": time.perf_counter() - began, **spent}

@@ -77,6 +77,15 @@ def narrowest_openings(
     return sorted(found, key=lambda one: one.play)[:count]
 
 
+def load_kernels(cspace: CSpace) -> None:
+    """Load or compile what looking for openings calls, so that a time limit is its own."""
+    work = centring.new_workspace(cspace.scene)
+    GateFinder(cspace, *probe(cspace), 1.0, work).compile_kernels()
+    ball = Ellipsoid.from_semi_axes(np.ones(cspace.dimension))
+    gap(ball, ball)
+    containment_of(ball, ball)
+
+
 def least_width(cspace: CSpace) -> float:
     """The least width of the robot over all directions, a lower bound of it if it has joints."""
     if isinstance(cspace, ArticulatedCSpace):
@@ -93,7 +102,7 @@ def until(seconds: float) -> Callable[[], bool]:
 def _openings(cspace: CSpace, widest: float, should_stop: Callable[[], bool]) -> list[Opening]:
     """Openings that leave the probe no more than ``widest`` on each side, one for any bodies."""
     parts, placed = probe(cspace)
-    finder = GateFinder(cspace, parts, placed, widest, centring.new_workspace(cspace.model))
+    finder = GateFinder(cspace, parts, placed, widest, centring.new_workspace(cspace.scene))
     bodies, probes = _bodies(cspace), _probes(cspace, placed)
     middle = np.zeros(3)
     middle[: cspace.dimension] = 0.5 * (cspace.world.low + cspace.world.high)

@@ -121,7 +121,7 @@ def test_the_scenarios_planner_and_parameters_are_used():
     [
         ({"planner": "RRTKonnect"}, "did you mean RRTConnect"),
         ({"planner": "RRT", "parameters": {"rang": 1.0}}, "did you mean range"),
-        ({"planner": "RRT", "checker": "bullet"}, "expected one of plugin, fcl"),
+        ({"planner": "RRT", "checker": "bullet"}, "expected one of plugin, tabulated, fcl"),
         ({"planner": "HighwayRoadmap", "checker": "fcl"}, "plug-in checker only"),
         ({"planner": "RRT", "time_limit": 0.0}, "time limit"),
         ({"planner": "RRT", "time_limit": float("nan")}, "time limit"),

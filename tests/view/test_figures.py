@@ -8,6 +8,7 @@ from matplotlib.image import imread
 from matplotlib.patches import Ellipse
 
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.world import World
 from planners.view import colours
@@ -70,16 +71,37 @@ def test_spatial_workspace_shows_bodies_where_they_project():
 def test_nearer_bodies_hide_farther_ones():
     scenario = spatial_scenario()
     camera = workspace_camera(scenario)
-    near = scenario.world.obstacles[0].transform(np.eye(3), np.zeros(3))
     # Along the line of sight, behind the start's face and before it.
     face = scenario.robot.bodies_at(scenario.start)[0]
     for side, colour in ((-1.0, colours.START), (1.0, colours.OBSTACLE)):
-        moved = near.transform(np.eye(3), face.centre - near.centre + side * 30.0 * camera.back)
+        small = Ellipsoid.from_semi_axes([1.0] * 3)
+        moved = small.transform(np.eye(3), face.centre + side * 30.0 * camera.back)
         world = World(scenario.world.low, scenario.world.high, (moved,))
         other = Scenario("hidden", world, scenario.robot, scenario.start, scenario.goal)
         drawn = draw(other)
         place = workspace_camera(other).axes(face.centre[None])[0, :2]
         assert resembles(colour_at(rendered(drawn), drawn.axes[0], place), colour)
+
+
+def test_obstacles_that_hide_the_robot_are_seen_through():
+    scenario = spatial_scenario()
+    camera = workspace_camera(scenario)
+    bodies = scenario.robot.bodies_at(scenario.start)
+    middle = np.mean([body.centre for body in bodies], axis=0)
+    size = 4.0 * max(float(body.semi_axes.max()) for body in bodies)
+    before = Ellipsoid.from_semi_axes([size] * 3, middle + 40.0 * camera.back)
+    other = Scenario(
+        "hidden",
+        World(scenario.world.low, scenario.world.high, (before,)),
+        scenario.robot,
+        scenario.start,
+        scenario.goal,
+    )
+    drawn = draw(other)
+    place = workspace_camera(other).axes(bodies[0].centre[None])[0, :2]
+    seen = colour_at(rendered(drawn), drawn.axes[0], place)
+    assert not resembles(seen, colours.OBSTACLE)
+    assert seen[1] > seen[0]  # the start's green shines through
 
 
 def test_the_layer_shows_c_obstacles_intervals_and_roadmap():

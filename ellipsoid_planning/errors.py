@@ -14,6 +14,10 @@ class GeometryError(EllipsoidPlanningError, ValueError):
     """Numbers that describe no ellipsoid, robot or world, or an empty construction."""
 
 
+class GridError(EllipsoidPlanningError, ValueError):
+    """A grid or group of rotations or motions that does not exist, or has no such size."""
+
+
 class RobotError(GeometryError):
     """Links and joints that make no robot.
 

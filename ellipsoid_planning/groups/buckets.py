@@ -43,7 +43,9 @@ class Buckets:
         used = cell.contains(exponential(centres), 2.0 * half_diagonal)
         used |= np.linalg.norm(centres, axis=1) > math.pi - math.sqrt(3.0) * self._width
         self._row = np.where(used, np.cumsum(used) - 1, 0)
-        self._candidates, reach = _candidates(exponential(centres[used]), nodes, 2.0 * half_diagonal)
+        self._candidates, reach = _candidates(
+            exponential(centres[used]), nodes, 2.0 * half_diagonal
+        )
         self.reach = float(angle_of_chord(reach))
 
     def nearest(self, rotations: Array) -> Indices:

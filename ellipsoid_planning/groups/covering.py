@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 from ellipsoid_planning.groups.finite_groups import icosahedral
 from ellipsoid_planning.groups.group_grid import GroupGrid
 from ellipsoid_planning.groups.nearby import both_signs, tree_of
-from ellipsoid_planning.groups.quaternions import IDENTITY, angle_of_chord, random_rotations
+from ellipsoid_planning.groups.quaternions import (
+    IDENTITY,
+    angle,
+    angle_of_chord,
+    inverse,
+    left_matrix,
+    random_rotations,
+)
 from ellipsoid_planning.groups.rotation_grid import RotationGrid
 from ellipsoid_planning.groups.voronoi import VoronoiCell
 
@@ -44,12 +51,9 @@ def covering_radius(grid: RotationGrid, most: int = _EXACT) -> tuple[float, bool
 
 def probed_radius(grid: RotationGrid, probes: int = 200_000, seed: int = 0) -> float:
     """The largest distance [rad] of random rotations from the grid: a lower bound."""
-    rotations = random_rotations(probes, seed)
-    nodes = grid.at(grid.nearest(rotations))
-    chord = np.minimum(
-        np.linalg.norm(rotations - nodes, axis=1), np.linalg.norm(rotations + nodes, axis=1)
-    )
-    return float(angle_of_chord(chord.max()))
+    # A stream of its own, so that a random grid of the same seed is not probed at its nodes.
+    rotations = random_rotations(probes, np.random.default_rng((seed, probes)))
+    return float(angle(rotations, grid.at(grid.nearest(rotations))).max())
 
 
 def _holes(points: Array) -> tuple[Array, Array]:
@@ -103,8 +107,6 @@ def _of_patches(grid: RotationGrid) -> float:
 
 def _turned_near(nodes: Array, element: Array, reach: float) -> Array:
     """The nodes within ``reach`` [rad] of an element, seen from it."""
-    from ellipsoid_planning.groups.quaternions import inverse, left_matrix
-
     overlap = nodes @ element
     near = np.abs(overlap) >= math.cos(0.5 * min(reach, math.pi))
     signed = nodes[near] * np.sign(overlap[near])[:, None]

@@ -50,9 +50,11 @@ class GroupGrid(RotationGrid):
         cell_nodes: the centre cell's nodes (m, 4), no two of which the group maps to each other.
     """
 
-    def __init__(self, name: str, group: FiniteGroup, nodes: ArrayLike) -> None:
-        """Take nodes in the closed centre cell; of those on its border one of each coset is kept."""
-        self.name, self.group = name, group
+    def __init__(
+        self, name: str, group: FiniteGroup, nodes: ArrayLike, max_distortion: float | None = None
+    ) -> None:
+        """Take nodes of the closed centre cell, of those on its border one of each coset."""
+        self.name, self.group, self.max_distortion = name, group, max_distortion
         self.cell = VoronoiCell.of_group(group)
         self.cell_nodes = one_per_coset(canonical(unit(nodes)), group)
         self.cell_nodes.setflags(write=False)

@@ -76,6 +76,7 @@ def lattice_levels(cell: VoronoiCell, lattice: str, count: int) -> LatticeLevels
     safe = np.where(length > 0.0, length, 1.0)
     largest = np.where(length > 0.0, cell.reach(points / safe[:, None]) / safe, np.inf)
     largest = -np.sort(-largest[largest > least])
-    ends = np.flatnonzero(np.diff(largest) < -1e-9 * largest[1:]) + 1
-    steps = np.concatenate([largest[ends - 1], largest[ends[-1:]]])
+    falls = np.flatnonzero(np.diff(largest) < -1e-9 * largest[1:]) + 1
+    ends = np.append(falls, len(largest))
+    steps = np.append(largest[ends - 1], least)
     return LatticeLevels(ends.astype(np.int64), steps)

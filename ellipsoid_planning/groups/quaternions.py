@@ -63,7 +63,7 @@ def angle(first: Array, second: Array) -> Array:
     return angle_of_chord(chord)
 
 
-def angle_of_chord(chord: Array) -> Array:
+def angle_of_chord(chord: ArrayLike) -> Array:
     """The angle [rad] between rotations whose quaternions are ``chord`` <= sqrt(2) apart."""
     return 4.0 * np.arcsin(np.minimum(0.5 * np.asarray(chord), 1.0))
 

@@ -57,10 +57,13 @@ class RotationGrid(ABC):
     Attributes:
         name: of the grid, with what it was made from.
         count: how many rotations.
+        max_distortion: the largest C of thesis (4.11) of the coordinates in which the grid is even;
+            None for a grid that is even in no coordinates.
     """
 
     name: str
     count: int
+    max_distortion: float | None = None
 
     @abstractmethod
     def at(self, indices: ArrayLike) -> Array:
@@ -131,10 +134,17 @@ class FormulaGrid(RotationGrid):
     Its neighbours and nearest nodes come from a k-d tree of all rotations, made when asked.
     """
 
-    def __init__(self, name: str, count: int, formula: Callable[[NDArray[np.int64]], Array]) -> None:
+    def __init__(
+        self,
+        name: str,
+        count: int,
+        formula: Callable[[NDArray[np.int64]], Array],
+        max_distortion: float | None = None,
+    ) -> None:
         if count < 1:
             raise GridError(f"a grid has at least 1 rotation, not {count}")
         self.name, self.count, self._formula = name, count, formula
+        self.max_distortion = max_distortion
 
     def at(self, indices: ArrayLike) -> Array:
         """The quaternions (..., 4) of nodes 0 <= indices (...) < count."""

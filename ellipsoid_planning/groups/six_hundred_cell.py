@@ -1,4 +1,4 @@
-"""The tetrahedral grid: the 600-cell's tetrahedra, divided evenly and pushed onto the sphere.
+"""The 600-cell grid: the 600-cell's tetrahedra, divided evenly and pushed onto the sphere.
 
 The 120 unit quaternions of the icosahedral group are the vertices of the regular 600-cell, five
 tetrahedra about each edge: 5 * 70.5° = 352.6°, so that space has to bend by 2 % only to close. Each
@@ -32,25 +32,25 @@ EDGE = math.pi / 5.0
 _MOST_DIVISIONS = 100  # 50 million rotations
 
 
-def tetrahedral_count(divisions: int) -> int:
+def six_hundred_cell_count(divisions: int) -> int:
     """How many rotations the grid with ``divisions`` of each edge has, 50 n^3 + 10 n."""
     return 50 * divisions**3 + 10 * divisions
 
 
-def tetrahedral_grid(divisions: int) -> GroupGrid:
-    """The tetrahedral grid with every edge of the 600-cell divided into ``divisions`` arcs.
+def six_hundred_cell_grid(divisions: int) -> GroupGrid:
+    """The grid with every edge of the 600-cell divided into ``divisions`` arcs.
 
     Raises:
         GridError: ``divisions`` is not from 1 to 100.
     """
     if not 1 <= divisions <= _MOST_DIVISIONS:
-        raise GridError(f"the tetrahedral grid has 1 to {_MOST_DIVISIONS} divisions, not {divisions}")
+        raise GridError(f"the 600-cell grid has 1 to {_MOST_DIVISIONS} divisions, not {divisions}")
     shares = _shares(divisions)
     # The node of the largest share of the identity is in the identity's Voronoi cell.
     shares = shares[shares[:, 0] >= shares.max(axis=1)]
     weights = np.sin(EDGE / divisions * shares)
     nodes = np.einsum("ms,tsd->tmd", weights, tetrahedra_at_identity()).reshape(-1, 4)
-    return GroupGrid(f"tetrahedral-{divisions}", icosahedral(), unit(nodes))
+    return GroupGrid(f"600-cell-{divisions}", icosahedral(), unit(nodes))
 
 
 def tetrahedra_at_identity() -> Array:

@@ -104,13 +104,17 @@ def euler_grid(alphas: int, betas: int, gammas: int) -> FormulaGrid:
         half = 0.5 * np.arccos(1.0 - 2.0 * (beta + 0.5) / betas)
         return _zxz(alpha, half, gamma)
 
-    return FormulaGrid(f"euler-{alphas}x{betas}x{gammas}", alphas * betas * gammas, formula)
+    name, count = f"euler-{alphas}x{betas}x{gammas}", alphas * betas * gammas
+    # C is sqrt(2/3) |cos beta|, largest at the first and the last beta.
+    return FormulaGrid(name, count, formula, math.sqrt(2.0 / 3.0) * (1.0 - 1.0 / betas))
 
 
 def _zxz(alpha: Array, half_beta: Array, gamma: Array) -> Array:
     plus, minus = 0.5 * (alpha + gamma), 0.5 * (alpha - gamma)
     columns = np.sin(half_beta) * np.cos(minus), np.sin(half_beta) * np.sin(minus)
-    return np.stack([*columns, np.cos(half_beta) * np.sin(plus), np.cos(half_beta) * np.cos(plus)], -1)
+    return np.stack(
+        [*columns, np.cos(half_beta) * np.sin(plus), np.cos(half_beta) * np.cos(plus)], -1
+    )
 
 
 def random_grid(count: int, seed: int = 0) -> FormulaGrid:

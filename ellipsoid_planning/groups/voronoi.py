@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GridError
 from ellipsoid_planning.groups.finite_groups import FiniteGroup
-from ellipsoid_planning.groups.quaternions import IDENTITY, angle, canonical, rodrigues
+from ellipsoid_planning.groups.quaternions import IDENTITY, angle, canonical
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ class VoronoiCell:
         Raises:
             GridError: the cell reaches half turns in a whole direction, as cyclic groups' do.
         """
-        found = _vertices(self.normals, self.offsets)
+        found = polyhedron_vertices(self.normals, self.offsets, np.zeros(3))
         if not (len(found) and self.is_bounded):
             raise GridError("this Voronoi cell has no finite vertices in Rodrigues coordinates")
         return found
@@ -114,11 +114,12 @@ class VoronoiCell:
         return float(2.0 * np.arctan(self.offsets.min(initial=np.inf)))
 
 
-def _vertices(normals: Array, offsets: Array) -> Array:
+def polyhedron_vertices(normals: Array, offsets: Array, inside: Array) -> Array:
+    """The finite vertices (m, 3) where normals @ x <= offsets, for a point strictly inside."""
     from scipy.spatial import HalfspaceIntersection, QhullError
 
     try:
-        meet = HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3))
+        meet = HalfspaceIntersection(np.column_stack([normals, -offsets]), inside)
     except QhullError:
         return np.empty((0, 3))
     points = meet.intersections[np.all(np.isfinite(meet.intersections), axis=1)]
@@ -129,7 +130,7 @@ def _irredundant(normals: Array, offsets: Array) -> NDArray[np.intp]:
     """The half-spaces that have a face, or all when the cell has no vertices."""
     if len(normals) < 4:
         return np.arange(len(normals))
-    vertices = _vertices(normals, offsets)
+    vertices = polyhedron_vertices(normals, offsets, np.zeros(3))
     if len(vertices) < 4:
         return np.arange(len(normals))
     touching = np.abs(vertices @ normals.T - offsets) < 1e-9
@@ -143,23 +144,9 @@ def _spread(points: Array) -> Array:
     return points - points.mean(axis=0)
 
 
-def nearest_element(group: FiniteGroup, rotations: ArrayLike) -> NDArray[np.intp]:
-    """Which element's Voronoi cell each of the rotations (..., 4) lies in."""
-    return group.nearest(rotations)
-
-
 def polyhedron_edges(normals: Array, offsets: Array, vertices: Array) -> NDArray[np.intp]:
     """The edges (e, 2) of a polyhedron as pairs of vertices, for drawing."""
     on = np.abs(vertices @ normals.T - offsets) < 1e-9
     pairs = itertools.combinations(range(len(vertices)), 2)
     edges = [(i, j) for i, j in pairs if np.count_nonzero(on[i] & on[j]) >= 2]
     return np.array(edges, dtype=np.intp).reshape(-1, 2)
-
-
-__all__ = [
-    "ALL_ROTATIONS",
-    "VoronoiCell",
-    "nearest_element",
-    "polyhedron_edges",
-    "rodrigues",
-]

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
+from ellipsoid_planning.groups.finite_groups import icosahedral_rotations
+from ellipsoid_planning.groups.standard_grids import super_fibonacci
 from ellipsoid_planning.kernels.grid import UNKNOWN, between, find_nearest
 from ellipsoid_planning.kernels.roadmap_metric import METRIC
 from ellipsoid_planning.roadmap.orientations import (
     headings,
-    icosahedral_rotations,
     random_turn,
     spread_orientations,
-    super_fibonacci,
 )
 
 

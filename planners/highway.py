@@ -33,8 +33,8 @@ class HighwayRoadmap(CorePlanner):
 
     Parameters are plain attributes, read at every `solve`; see
     ellipsoid_planning.roadmap.parameters.RoadmapParameters for what they mean: ``layers``,
-    ``lines``, ``axis``, ``neighbours``, ``inflation``, ``refine``, ``anytime``, ``seed`` and
-    ``metric_weight``. Changing one discards the roadmap.
+    ``lines``, ``axis``, ``neighbours``, ``inflation``, ``refine``, ``anytime``, ``seed``,
+    ``metric_weight`` and ``orientations``. Changing one discards the roadmap.
 
     Attributes:
         error: the traceback of an exception that ended the last solve with CRASH, or None.
@@ -50,6 +50,7 @@ class HighwayRoadmap(CorePlanner):
         "anytime": bool,
         "seed": int,
         "metric_weight": (float, int, _OPTIONAL),
+        "orientations": (dict, _OPTIONAL),
     }
     PARAMETER_CLASS = RoadmapParameters
     RIGID_ONLY = False

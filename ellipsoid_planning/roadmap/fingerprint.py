@@ -62,6 +62,7 @@ def shape_of(parameters: RoadmapParameters, dimension: int) -> dict[str, Any]:
         "axis": parameters.axis,
         "neighbours": parameters.neighbour_count(dimension),
         "seed": parameters.seed,
+        "orientations": None if parameters.orientations is None else dict(parameters.orientations),
     }
 
 

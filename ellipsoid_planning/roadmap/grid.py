@@ -109,11 +109,13 @@ class Grid:
         neighbours: int,
         joints: Array,
         weight: float,
+        layer_neighbours: Indices | None = None,
     ) -> None:
         """Join each layer to its ``neighbours`` nearest ones; of the columns that is given.
 
         ``weight`` is that of the base's turn in the distance of layers, beside that of the
-        ``joints`` (J, METRIC); see kernels.roadmap_metric.
+        ``joints`` (J, METRIC); see kernels.roadmap_metric. ``layer_neighbours`` (L, K), filled up
+        with −1, are taken instead of the nearest ones.
         """
         self.joints = joints
         self._weight = weight
@@ -124,9 +126,11 @@ class Grid:
         self.passing_columns = np.zeros(len(self.columns), dtype=np.bool_)
         self.passing_layers = np.zeros(len(self.orientations), dtype=np.bool_)
         self.own_layers = len(orientations)
-        self.joined = min(neighbours, len(orientations) + QUERY_ROOM)
-        unknown = np.full((len(orientations), self.joined), UNKNOWN, dtype=np.int64)
-        self.layer_neighbours = _with_spare_rows(_with_room(unknown), -1)
+        if layer_neighbours is None:
+            self.joined = min(neighbours, len(orientations) + QUERY_ROOM)
+            layer_neighbours = np.full((len(orientations), self.joined), UNKNOWN, dtype=np.int64)
+        self.joined = layer_neighbours.shape[1]
+        self.layer_neighbours = _with_spare_rows(_with_room(layer_neighbours), -1)
         self._distances = np.empty(max(len(self.columns), len(self.orientations)))
 
     def column_of(self, position: Array, axis: int, joins: bool = True) -> int:

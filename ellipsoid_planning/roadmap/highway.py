@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
+from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.robot_model import ways_are_free
@@ -25,9 +26,10 @@ from ellipsoid_planning.roadmap.joint_layers import (
     layer_metric,
     spread_layers,
 )
+from ellipsoid_planning.roadmap.layer_grids import MOST_LAYERS, grid_layers
 from ellipsoid_planning.roadmap.level import Level
 from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
-from ellipsoid_planning.roadmap.parameters import MOST_LAYERS, RoadmapParameters
+from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels, compiling_aside
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.regions import Box, is_same, query_boxes, within
@@ -245,25 +247,40 @@ class HighwayRoadmap:
         if refinement > 0:
             lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(local.world, axis, lines)
-        if isinstance(self.cspace, ArticulatedCSpace):
-            if orientations is None:
-                orientations = self._joint_layers(self.cspace, refinement)
-            if has_fixed_base(self.cspace):
-                columns, neighbours = np.zeros((0, 3)), neighbours[:0]
-        elif not self.cspace.rotates:
-            orientations = np.empty((0, 4))
-        elif orientations is None:
-            count = min(round(given.layer_count(dimension) * _MORE_LAYERS**refinement), MOST_LAYERS)
-            orientations = spread_orientations(dimension, count)
-            if refinement > 0:
-                orientations = random_turn(orientations, dimension, self._random)
+        if has_fixed_base(self.cspace):
+            columns, neighbours = np.zeros((0, 3)), neighbours[:0]
+        layers, near = self._layers(refinement, orientations)
         joined = given.neighbour_count(dimension, articulated=len(joints) > 0)
-        grid = Grid(columns, neighbours, orientations, joined, joints, self._weight)
+        grid = Grid(columns, neighbours, layers, joined, joints, self._weight, near)
         guides = None
         if isinstance(self.cspace, ArticulatedCSpace):
             few = has_few_angles(self.cspace.articulated)
             guides = None if few else self._guides
         return Level(local, grid, axis, self._finder(local, box), refinement, box, guides)
+
+    def _layers(
+        self, refinement: int, stored: Array | None
+    ) -> tuple[Array, NDArray[np.int64] | None]:
+        """The layers of a level (L, 4 + V), unless ``stored``, and a grid's own neighbours."""
+        dimension, given = self.cspace.dimension, self.parameters
+        finer = _MORE_LAYERS**refinement
+        if isinstance(self.cspace, ArticulatedCSpace):
+            if given.orientations is not None:
+                raise PlannerError("orientations: robots with joints have layers of their own")
+            layers = self._joint_layers(self.cspace, refinement) if stored is None else stored
+            return layers, None
+        if not self.cspace.rotates:
+            return np.empty((0, 4)), None
+        near = None
+        if given.orientations is not None:
+            layers, near = grid_layers(dimension, given.orientations, finer)
+        else:
+            count = min(round(given.layer_count(dimension) * finer), MOST_LAYERS)
+            layers = spread_orientations(dimension, count)
+        if stored is not None:
+            return stored, near
+        turned = random_turn(layers, dimension, self._random) if refinement > 0 else layers
+        return turned, near
 
     def _joint_layers(self, cspace: ArticulatedCSpace, refinement: int) -> Array:
         """The layers of a level for an articulated robot; finer levels go on with other ones."""

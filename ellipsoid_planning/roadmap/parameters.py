@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
+from typing import Any
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.roadmap.layer_grids import MOST_LAYERS, check_orientations
 
-MOST_LAYERS = 100_000
 # Name, least and most of the integers that may be left to the planner.
 _CHOICES = (
     ("layers", 1, MOST_LAYERS),
@@ -35,6 +37,10 @@ class RoadmapParameters:
         refine: how many times an exhausted roadmap is replaced by a finer one; 0 for never.
         anytime: improve the path until the time is over.
         seed: of the orientations of finer levels and of the improvement of paths.
+        orientations: {grid: NAME, count: N} or {grid: NAME, resolution_deg: D}: the grid of
+            rotations that the first level's layers are (``headings`` in the plane), instead of
+            ``layers``; with its own neighbours. Finer levels have finer ones. See
+            roadmap.layer_grids; not for robots with joints.
         metric_weight: length that a turn of one radian counts for in the search, in the
             scenario's unit; half the robot's reach by default.
 
@@ -51,6 +57,7 @@ class RoadmapParameters:
     anytime: bool = False
     seed: int = 1
     metric_weight: float | None = None
+    orientations: Mapping[str, Any] | None = None
 
     def __post_init__(self) -> None:
         for name, least, most in _CHOICES:
@@ -61,6 +68,8 @@ class RoadmapParameters:
         self._check("inflation", Real, 1)
         if self.metric_weight is not None:
             self._check("metric_weight", Real, 0)
+        if self.orientations is not None:
+            check_orientations(self.orientations)
         if not isinstance(self.anytime, bool):
             raise PlannerError(f"anytime: expected true or false, got {self.anytime!r}")
 

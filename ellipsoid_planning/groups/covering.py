@@ -10,6 +10,8 @@ beyond those nodes, which is checked.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,35 +76,34 @@ def _of_everything(grid: RotationGrid) -> float:
 
 def _of_cell(grid: GroupGrid) -> float:
     """The largest hole whose centre is in the centre cell; the group maps all holes there."""
-    cell = grid.cell
-    margin = 3.0 * grid.spacing
-    while cell.circumradius + margin < math.pi:
-        nodes, _ = grid.shifted(cell.circumradius + margin)
-        largest = _largest_hole(nodes, cell)
-        if largest <= margin:
-            return largest
-        margin = 1.5 * max(largest, margin) if largest < math.pi else 2.0 * margin
-    return _of_everything(grid)
+    largest = _of_patch(lambda reach: grid.shifted(reach)[0], grid.cell, grid.spacing)
+    return _of_everything(grid) if largest is None else largest
 
 
 def _of_patches(grid: RotationGrid) -> float:
     """The largest hole in any of the icosahedral group's cells, one by one."""
-    group = icosahedral()
-    cell = VoronoiCell.of_group(group)
-    nodes = grid.quaternions()
-    largest = 0.0
-    for element in group.quaternions:
-        margin = 3.0 * grid.spacing
-        while True:
-            near = _turned_near(nodes, element, cell.circumradius + margin)
-            hole = _largest_hole(near, cell) if len(near) > 5 else math.inf
-            if hole <= margin:
-                break
-            if cell.circumradius + margin >= math.pi:
-                return _of_everything(grid)
-            margin *= 2.0
+    cell, nodes, largest = VoronoiCell.of_group(icosahedral()), grid.quaternions(), 0.0
+    for element in icosahedral().quaternions:
+        hole = _of_patch(partial(_turned_near, nodes, element), cell, grid.spacing)
+        if hole is None:
+            return _of_everything(grid)
         largest = max(largest, hole)
     return largest
+
+
+def _of_patch(near: Callable[[float], Array], cell: VoronoiCell, spacing: float) -> float | None:
+    """The largest hole in a cell, or None when holes are so large that all nodes are needed.
+
+    ``near`` gives the nodes within an angle [rad] of the identity.
+    """
+    margin = 3.0 * spacing
+    while cell.circumradius + margin < math.pi:
+        largest, widest = _holes_of_cell(near(cell.circumradius + margin), cell)
+        # Balls that reach into the cell then end before the nodes do, and no hole was missed.
+        if widest <= margin:
+            return largest
+        margin *= 1.5
+    return None
 
 
 def _turned_near(nodes: Array, element: Array, reach: float) -> Array:
@@ -113,11 +114,19 @@ def _turned_near(nodes: Array, element: Array, reach: float) -> Array:
     return signed @ left_matrix(inverse(element)).T
 
 
-def _largest_hole(nodes: Array, cell: VoronoiCell) -> float:
-    centres, radii = _holes(nodes)
+def _holes_of_cell(nodes: Array, cell: VoronoiCell) -> tuple[float, float]:
+    """The radii [rad] of the largest hole with its centre in the cell, and of any that meets it."""
+    from scipy.spatial import QhullError
+
+    try:
+        centres, radii = _holes(nodes)
+    except (QhullError, ValueError):  # too few nodes, or all in one plane
+        return math.inf, math.inf
+    away = 2.0 * np.arccos(np.clip(centres @ IDENTITY, -1.0, 1.0))
+    meeting = away - radii <= cell.circumradius
     # Slightly wider than the cell, so that rounding drops no centre on its border.
-    inside = cell.contains(centres, 1e-9) & (centres @ IDENTITY > 0.0)
-    return float(radii[inside].max(initial=0.0))
+    inside = cell.contains(centres, 1e-9) & (away < math.pi)
+    return float(radii[inside].max(initial=0.0)), float(radii[meeting].max(initial=0.0))
 
 
 def separation(grid: RotationGrid) -> float:

@@ -8,7 +8,9 @@ cells. Node (a, b, c, d) / n of a tetrahedron goes to sum sin(36° a / n) v_a, n
 divided into equal arcs.
 
 There are 50 n^3 + 10 n rotations, 72° / n apart. For n from 2 to 27 that separation is within 4 %
-of a perfect face-centred cubic crystal's and the covering radius within 2 % of its.
+of a perfect face-centred cubic crystal's and the covering radius within 2 % of its. A perfect
+body-centred crystal would cover 11 % better, but a tetrahedron's faces are no mirror planes of it;
+in the icosahedral group's cells, relaxed by Lloyd's method, it covered 3 to 6 % worse than this.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ from planners.cli.joints import joints
 from planners.cli.measure import measure
 from planners.cli.minkowski import minkowski
 from planners.cli.plan import plan
+from planners.cli.rotations import rotations
 from planners.cli.scenarios import scenarios
 from planners.cli.schema import schema
 from planners.cli.show import show
@@ -76,6 +77,7 @@ for command in (
     family,
     measure,
     minkowski,
+    rotations,
     verify,
     benchmark,
     schema,

@@ -104,7 +104,7 @@ def _cell_of(group: FiniteGroup, conjugation: np.ndarray) -> VoronoiCell:
 
 def figure_4_7() -> Figure:
     """Cells of double cosets in the icosahedral group's."""
-    drawn = Figure(figsize=(12.0, 4.4), layout="constrained")
+    drawn = Figure(figsize=(12.0, 4.9), layout="constrained")
     whole = VoronoiCell.of_group(icosahedral())
     for place, make in enumerate(PLATONIC):
         cell = double_cell(make)
@@ -112,7 +112,7 @@ def figure_4_7() -> Figure:
         draw_solid(axes, curved_faces(whole), YELLOW, 0.10)
         draw_solid(axes, curved_faces(cell), ORANGE, 0.9)
         title = f"{make().name} (conjugated) and icosahedral\n{len(make()) * 60} cells, "
-        axes.set_title(f"{title}‖x‖ ≤ {cell.circumradius:.4f}", fontsize=10)
+        axes.set_title(f"{title}‖x‖ ≤ {cell.circumradius:.4f}", y=0.98, fontsize=10)
     return drawn
 
 

@@ -12,7 +12,7 @@ from ellipsoid_planning.groups import VoronoiCell, Wedge
 from ellipsoid_planning.groups.quaternions import from_rodrigues, logarithm, rodrigues
 from planners.view import colours
 
-FINE = 8  # how often each triangle's edges are divided
+FINE = 5  # how often each triangle's edges are divided
 LIGHT = LightSource(azdeg=225.0, altdeg=45.0)
 
 

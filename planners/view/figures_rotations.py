@@ -118,8 +118,8 @@ def draw_distances(axes: Axes, grid: RotationGrid) -> None:
     for values, colour, label in kinds:
         axes.hist(
             values,
-            BINS,
-            (0.0, top),
+            bins=BINS,
+            range=(0.0, top),
             weights=np.full(len(values), 100.0 / len(values)),
             color=colour,
             alpha=0.6,

@@ -169,7 +169,6 @@ def pack_kinematics(
     header[layout.JOINT_COUNT] = len(bodies.joints)
     header[layout.PARTS] = len(bodies.parts)
     header[layout.WIDTH] = 7 + robot.configuration_size - robot.base_size
-    header[layout.BASE_ROTATES] = robot.rotates
     header[layout.STEP_SIZE] = 6 + sum(_tangents(joint.type) for joint in robot.moving_joints)
     header[layout.BASE_MOVES] = robot.base != FIXED_BASE
     header[layout.ROBOT_REACH] = robot_reach(robot)

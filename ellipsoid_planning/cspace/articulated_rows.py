@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.cspace.poses import SAME_QUATERNION, rotation_quaternion
+from ellipsoid_planning.cspace.poses import heading_between, rotation_between, rotation_quaternion
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.orientation import normalised_heading
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
@@ -77,27 +77,13 @@ def interpolated(robot: ArticulatedRobot, first: ArrayLike, second: ArrayLike, s
     a, b = _checked(robot, first)[0], _checked(robot, second)[0]
     out = a + s * (b - a)
     if robot.rotates and robot.dimension == 2:
-        out[2] = _heading(a[2], b[2], s)
+        out[2] = heading_between(a[2], b[2], s)
     elif robot.rotates:
-        out[3:7] = _slerp(a[3:7], b[3:7], s)
+        out[3:7] = rotation_between(a[3:7], b[3:7], s)
     for joint in robot.moving_joints:
         at = robot.joint_slices[joint.name]
         if joint.type == CONTINUOUS:
-            out[at] = _heading(a[at.start], b[at.start], s)
+            out[at] = heading_between(a[at.start], b[at.start], s)
         elif joint.type == BALL:
-            out[at] = _slerp(a[at], b[at], s)
+            out[at] = rotation_between(a[at], b[at], s)
     return out
-
-
-def _heading(first: float, second: float, s: float) -> float:
-    return normalised_heading(first + s * math.remainder(second - first, 2.0 * math.pi))
-
-
-def _slerp(first: Array, second: Array, s: float) -> Array:
-    product = float(first @ second)
-    if abs(product) > SAME_QUATERNION:
-        return first
-    angle = math.acos(abs(product))
-    sign = -1.0 if product < 0.0 else 1.0
-    mixed = math.sin((1.0 - s) * angle) * first + sign * math.sin(s * angle) * second
-    return np.asarray(mixed / math.sin(angle))

@@ -87,15 +87,23 @@ def interpolate(robot: RigidRobot, first: ArrayLike, second: ArrayLike, s: float
     if not robot.rotates:
         return out
     if n == 2:
-        turn = math.remainder(b[2] - a[2], 2.0 * math.pi)
-        out[2] = normalised_heading(a[2] + s * turn)
-        return out
-    product = float(a[3:] @ b[3:])
+        out[2] = heading_between(a[2], b[2], s)
+    else:
+        out[3:] = rotation_between(a[3:], b[3:], s)
+    return out
+
+
+def heading_between(first: float, second: float, s: float) -> float:
+    """The heading [rad] at ``s`` in [0, 1] of the shorter way, as SO2StateSpace interpolates."""
+    return normalised_heading(first + s * math.remainder(second - first, 2.0 * math.pi))
+
+
+def rotation_between(first: Array, second: Array, s: float) -> Array:
+    """The quaternion (4,) at ``s`` in [0, 1] of the shorter arc, as SO3StateSpace interpolates."""
+    product = float(first @ second)
     if abs(product) > SAME_QUATERNION:
-        out[3:] = a[3:]
-        return out
+        return first
     angle = math.acos(abs(product))
     sign = -1.0 if product < 0.0 else 1.0
-    out[3:] = math.sin((1.0 - s) * angle) * a[3:] + sign * math.sin(s * angle) * b[3:]
-    out[3:] /= math.sin(angle)
-    return out
+    mixed = math.sin((1.0 - s) * angle) * first + sign * math.sin(s * angle) * second
+    return np.asarray(mixed / math.sin(angle))

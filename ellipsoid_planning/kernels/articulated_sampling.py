@@ -28,17 +28,14 @@ from .kinematics import (
 )
 from .layout import (
     ARENA_COUNT,
-    DIMENSION,
-    HIGH,
-    LOW,
     OBSTACLE_COUNT,
     PART_COUNT,
     new_placed,
     part_rows,
 )
 from .linear import product
-from .lines import CAPACITY, free_intervals
-from .sampling import NUMBERS, PLANAR, SPATIAL, clip, place_in, random_rotation, random_turn
+from .lines import CAPACITY
+from .sampling import NUMBERS, PLANAR, SPATIAL, draw_position, random_rotation, random_turn
 from .self_collision import first_self_contact, new_body, new_order
 from .whitening import WHITEN
 
@@ -123,7 +120,6 @@ def draw_articulated(scene, kinematics, kind, near, distance, uniform, numbers, 
     whole space, else within that distance of the row ``near`` in OMPL's metric; ``near`` also gives
     what does not vary. ``uniform`` makes the draw exactly uniform, see kernels.sampling.
     """
-    dimension = int(scene[DIMENSION])
     joints, parts = joint_rows(kinematics), part_rows(scene)
     pairs = max(1, int(scene[PART_COUNT] * (scene[OBSTACLE_COUNT] + scene[ARENA_COUNT])))
     rows = min(pairs, 64)
@@ -144,26 +140,9 @@ def draw_articulated(scene, kinematics, kind, near, distance, uniform, numbers, 
         place_robot(parts, kinematics, out, frames, placed)
         if first_self_contact(scene, kinematics, frames, placed, order, body)[0] >= 0:
             continue
-        axis = dimension - 1
-        if not uniform:
-            axis = min(int(row[6] * dimension), dimension - 1)
-        width = room / math.sqrt(dimension)
-        for k in range(dimension):
-            low, high = scene[LOW + k], scene[HIGH + k]
-            if distance >= 0.0:
-                low, high = max(low, near[k] - width), min(high, near[k] + width)
-            point[k] = low + row[3 + k] * (high - low)
-        keys[:] = -1
-        count = free_intervals(
-            scene, placed, 0, table, keys, scratch, axis, point[0], point[1], point[2], intervals
-        )
-        low, high = scene[LOW + axis], scene[HIGH + axis]
-        if distance >= 0.0:
-            low, high = max(low, near[axis] - width), min(high, near[axis] + width)
-        count, total = clip(intervals, count, low, high)
-        if count == 0 or (uniform and row[7] * (high - low) >= total):
-            continue
-        point[axis] = place_in(intervals, count, row[3 + axis] * total)
-        out[0], out[1], out[2] = point[0], point[1], point[2]
-        return True
+        if draw_position(
+            scene, placed, near, distance >= 0.0, room, uniform, row, table, keys, scratch,
+            intervals, point, out,
+        ):  # fmt: skip
+            return True
     return False

@@ -29,12 +29,11 @@ from .validity import is_rotation
 JOINT_COUNT = 0
 PARTS = 1
 WIDTH = 2
-BASE_ROTATES = 3
 # How many numbers a step has, whether the base moves at all, how far points get from the base.
-STEP_SIZE = 4
-BASE_MOVES = 5
-ROBOT_REACH = 6
-KINEMATICS_HEADER = 7
+STEP_SIZE = 3
+BASE_MOVES = 4
+ROBOT_REACH = 5
+KINEMATICS_HEADER = 6
 
 REVOLUTE = 0
 CONTINUOUS = 1

@@ -62,7 +62,7 @@ def _is_rigid(model):
 
 def scene_of(model):
     """The packed scene of a model."""
-    return model if isinstance(model, np.ndarray) else model.scene
+    raise NotImplementedError
 
 
 @overload(scene_of, inline="always")
@@ -74,12 +74,7 @@ def _scene_of(model):
 
 def place_at(model, pose, placed):
     """Write all parts of the robot at ``pose`` to ``placed``."""
-    if isinstance(model, np.ndarray):
-        placement.place(model, *pose, placed)
-    else:
-        kinematics.place_robot(
-            part_rows(model.scene), model.kinematics, pose, model.work.frames, placed
-        )
+    raise NotImplementedError
 
 
 @overload(place_at)

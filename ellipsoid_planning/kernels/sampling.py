@@ -73,6 +73,40 @@ def place_in(intervals, count, amount):
 
 
 @kernel
+def draw_position(
+    scene, placed, near, bounded, room, uniform, row, table, keys, scratch, intervals, point, out
+):
+    """Draw the base's position for a robot placed at the origin: whether its line has any room.
+
+    If ``bounded``, it is at most ``room`` from that of ``near``. ``row`` holds the random numbers
+    of this attempt, ``out`` receives the position; the others are workspaces.
+    """
+    dimension = int(scene[DIMENSION])
+    axis = dimension - 1
+    if not uniform:
+        axis = min(int(row[6] * dimension), dimension - 1)
+    width = room / math.sqrt(dimension)
+    for k in range(dimension):
+        low, high = scene[LOW + k], scene[HIGH + k]
+        if bounded:
+            low, high = max(low, near[k] - width), min(high, near[k] + width)
+        point[k] = low + row[3 + k] * (high - low)
+    keys[:] = -1
+    count = free_intervals(
+        scene, placed, 0, table, keys, scratch, axis, point[0], point[1], point[2], intervals
+    )
+    low, high = scene[LOW + axis], scene[HIGH + axis]
+    if bounded:
+        low, high = max(low, near[axis] - width), min(high, near[axis] + width)
+    count, total = clip(intervals, count, low, high)
+    if count == 0 or (uniform and row[7] * (high - low) >= total):
+        return False
+    point[axis] = place_in(intervals, count, row[3 + axis] * total)
+    out[0], out[1], out[2] = point[0], point[1], point[2]
+    return True
+
+
+@kernel
 def draw_free(scene, kind, near, distance, uniform, numbers, out):
     """Write a free pose (7,) to ``out``; False if the line of every attempt was refused.
 
@@ -81,7 +115,6 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
     accepts a line with probability (free length)/(longest possible), which makes the draw exactly
     uniform; otherwise the line's axis is random too and any free line is taken.
     """
-    dimension = int(scene[DIMENSION])
     parts = int(scene[PART_COUNT])
     pairs = max(1, parts * int(scene[OBSTACLE_COUNT] + scene[ARENA_COUNT]))
     placed = new_placed(scene)
@@ -112,28 +145,12 @@ def draw_free(scene, kind, near, distance, uniform, numbers, out):
                 room = distance - turn_by
                 half = min(turn_by, 0.5 * math.pi) * (2.0 * row[0] - 1.0)
                 q = product(0.0, 0.0, math.sin(half), math.cos(half), *q)
-        axis = dimension - 1
-        if not uniform:
-            axis = min(int(row[6] * dimension), dimension - 1)
-        width = room / math.sqrt(dimension)
-        for k in range(dimension):
-            low, high = scene[LOW + k], scene[HIGH + k]
-            if distance >= 0.0:
-                low, high = max(low, near[k] - width), min(high, near[k] + width)
-            point[k] = low + row[3 + k] * (high - low)
-        keys[:] = -1
         place(scene, 0.0, 0.0, 0.0, q[0], q[1], q[2], q[3], placed)
-        count = free_intervals(
-            scene, placed, 0, table, keys, scratch, axis, point[0], point[1], point[2], intervals
-        )
-        low, high = scene[LOW + axis], scene[HIGH + axis]
-        if distance >= 0.0:
-            low, high = max(low, near[axis] - width), min(high, near[axis] + width)
-        count, total = clip(intervals, count, low, high)
-        if count == 0 or (uniform and row[7] * (high - low) >= total):
+        if not draw_position(
+            scene, placed, near, distance >= 0.0, room, uniform, row, table, keys, scratch,
+            intervals, point, out,
+        ):  # fmt: skip
             continue
-        point[axis] = place_in(intervals, count, row[3 + axis] * total)
-        out[0], out[1], out[2] = point[0], point[1], point[2]
         out[3], out[4], out[5], out[6] = q
         return True
     return False

@@ -7,11 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link
-from ellipsoid_planning.scenario import bundled_scenarios, load_scenario
+from ellipsoid_planning.scenario import load_scenario
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -23,12 +22,8 @@ _APART = 2.04 * _HALF
 
 
 def scene(name: str) -> CSpace:
-    """The C-space of a bundled scenario, or one like it where there is none of that name."""
-    if name in bundled_scenarios():
-        return load_scenario(name).cspace()
-    if name == SNAKE:
-        return cspace_of(maze(40, 12.0), snake(5))
-    return cspace_of(cave(), chain(5))
+    """The C-space of a bundled scenario."""
+    return load_scenario(name).cspace()
 
 
 def snake(links: int, bend: float = 2.0) -> ArticulatedRobot:
@@ -44,16 +39,6 @@ def snake(links: int, bend: float = 2.0) -> ArticulatedRobot:
     return ArticulatedRobot(tuple(bodies), tuple(joints))
 
 
-def chain(links: int) -> ArticulatedRobot:
-    """Spheroids joined by ball joints."""
-    bodies = [Link(f"link {i}", (Ellipsoid.from_semi_axes([0.5, 0.2, 0.2]),)) for i in range(links)]
-    joints = [
-        Joint.of(f"joint {i}", f"link {i}", f"link {i + 1}", "ball", [1.02, 0.0, 0.0])
-        for i in range(links - 1)
-    ]
-    return ArticulatedRobot(tuple(bodies), tuple(joints))
-
-
 def maze(count: int, side: float, seed: int = 0) -> World:
     """A square with ``count`` elliptical obstacles."""
     random = np.random.default_rng(seed)
@@ -66,17 +51,6 @@ def maze(count: int, side: float, seed: int = 0) -> World:
         for _ in range(count)
     ]
     return World([0.0, 0.0], [side, side], tuple(obstacles))
-
-
-def cave(count: int = 8, seed: int = 0) -> World:
-    """An ellipsoidal arena with ``count`` ellipsoidal obstacles."""
-    random = np.random.default_rng(seed)
-    obstacles = [
-        Ellipsoid.from_semi_axes(random.uniform(0.3, 1.0, 3), random.uniform(-4.0, 4.0, 3))
-        for _ in range(count)
-    ]
-    arena = Ellipsoid.from_semi_axes([6.0, 5.0, 5.0])
-    return World([-6.0, -5.0, -5.0], [6.0, 5.0, 5.0], tuple(obstacles), (arena,))
 
 
 def configurations(cspace: CSpace, count: int, seed: int = 1) -> Array:

@@ -4,10 +4,13 @@ import subprocess
 import sys
 
 PROGRAM = """
+import numpy as np
+from ellipsoid_planning.cspace.sampling import FreeIntervalSampling
 from ellipsoid_planning.roadmap.highway import HighwayRoadmap
 from ellipsoid_planning.scenario import load_scenario
 for name in ("rabbit-3d-open", "chain-18dof"):
     HighwayRoadmap(load_scenario(name).cspace()).compile_kernels()
+FreeIntervalSampling(load_scenario("rabbit-3d-open").cspace(), 1).sample(np.empty(7))
 """
 
 

@@ -84,6 +84,10 @@ class UrdfError(EllipsoidPlanningError):
     """A URDF, or a mesh of it, that cannot be read, or that robots of ellipsoids cannot follow."""
 
 
+class CrystalError(EllipsoidPlanningError):
+    """A space group, cell, packing model or diffraction data that contradicts itself or another."""
+
+
 class PlannerError(EllipsoidPlanningError):
     """An unknown planner, an unknown parameter, or a parameter out of its range."""
 

@@ -96,7 +96,7 @@ class UnitCell:
     @cached_property
     def reciprocal(self) -> NDArray[np.float64]:
         """Shape (n, n), the columns are a*, b* (, c*), with a . a* = 1 (no factor of 2 pi)."""
-        reciprocal: NDArray[np.float64] = np.linalg.inv(self.basis).T
+        reciprocal = np.array(np.linalg.inv(self.basis).T, dtype=np.float64)
         reciprocal.setflags(write=False)
         return reciprocal
 

@@ -15,7 +15,7 @@ from ellipsoid_planning.scenario_blocks import Block, Body, NotNegative, Vector
 from ellipsoid_planning.scenario_format_robot import Pose, RobotBlock
 
 
-def _whole(value: Any) -> Any:
+def whole(value: Any) -> Any:
     """Refuse 2.0 and true, which Python holds equal to 2 and 1."""
     if isinstance(value, (bool, float)):
         raise PydanticCustomError("literal_error", "not a whole number")
@@ -40,10 +40,10 @@ class PlannerBlock(BaseModel):
 class ScenarioModel(Block):
     """A scenario: a world, a robot, and where it should go from where."""
 
-    format: Annotated[Literal[1], BeforeValidator(_whole)]
+    format: Annotated[Literal[1], BeforeValidator(whole)]
     name: StrictStr
     description: StrictStr = ""
-    dimension: Annotated[Literal[2, 3], BeforeValidator(_whole)]
+    dimension: Annotated[Literal[2, 3], BeforeValidator(whole)]
     bounds: Bounds
     arena: list[Body] = Field(default=[], description="each must contain the whole robot")
     obstacles: list[Body] = Field(default=[])

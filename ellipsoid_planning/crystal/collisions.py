@@ -1,0 +1,177 @@
+"""Which arrangements keep all copies of the molecule apart: one by one, or a whole grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.kernels import layout, molecule, packing, packing_search
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+# Room for this many arrangements is made at a time, or for those of one base pose.
+FOUND_AT_ONCE = 1 << 18
+
+
+@dataclass(frozen=True, eq=False)
+class GridSearch:
+    """The tables of a model that the search of its grid reads (see kernels.packing_search)."""
+
+    model: PackingModel
+
+    @cached_property
+    def limb_frames(self) -> tuple[int, ...]:
+        """The coordinate that carries each limb: the base's first, others as they are settled."""
+        base = self.model.molecule.base_count - 1
+        used = sorted({int(frame) for frame in self.model.molecule.part_frames} - {base})
+        return (base, *used)
+
+    def chain(self, frame: int) -> list[int]:
+        """The joints, numbered from 0, that carry a frame, outermost last."""
+        found = []
+        base = self.model.molecule.base_count
+        while frame >= base:
+            found.append(frame - base)
+            frame = int(self.model.molecule.parents[frame])
+        return found[::-1]
+
+    @cached_property
+    def tables(self) -> tuple[Integers, Array, Array, Integers, Integers, Integers]:
+        """limbs, shapes, placements, strides, levels and counts for the kernel."""
+        counts = self.model.grid.joint_counts
+        strides = np.zeros((len(self.limb_frames), len(counts)), np.int64)
+        limbs = np.zeros((len(self.limb_frames), 5), np.int64)
+        levels = np.full(len(self.limb_frames), -1, np.int64)
+        placements, shapes, rows = [], [], 0
+        for limb, frame in enumerate(self.limb_frames):
+            chain = self.chain(frame)
+            poses = 1
+            for joint in reversed(chain):
+                strides[limb, joint] = poses
+                poses *= counts[joint]
+            parts = np.flatnonzero(self.model.molecule.part_frames == frame)
+            limbs[limb] = sum(map(len, placements)), poses, sum(map(len, shapes)), len(parts), rows
+            levels[limb] = max(chain, default=-1)
+            placements.append(self._placements(chain, frame))
+            shapes.append(self._shapes(parts))
+            rows += poses * len(parts)
+        return (
+            limbs,
+            np.vstack(shapes),
+            np.vstack(placements),
+            strides,
+            levels,
+            np.array(counts, np.int64),
+        )
+
+    def _placements(self, chain: list[int], frame: int) -> Array:
+        """(poses, FRAME) of a frame against the base for all values of its chain."""
+        base = self.model.molecule.base_count
+        whole = self.model.molecule
+        values = [self.model.grid.joint_values[joint] for joint in chain]
+        grid = np.stack(np.meshgrid(*values, indexing="ij"), -1).reshape(-1, len(chain)) if chain \
+            else np.zeros((1, 0))
+        found = np.zeros((len(grid), molecule.FRAME))
+        found[:, [0, 4, 8]] = 1.0
+        if not chain:
+            return found
+        for row, digits in zip(found, grid, strict=True):
+            configuration = np.zeros(len(whole.coordinates))
+            configuration[[base + joint for joint in chain]] = digits
+            row[:] = whole.frames(configuration)[frame]
+        return found
+
+    def _shapes(self, parts: Integers) -> Array:
+        return _shape_rows(self.model, parts)
+
+    @cached_property
+    def own(self) -> NDArray[np.bool_]:
+        """(L, L), which two limbs of one molecule are looked at for collisions."""
+        count = len(self.limb_frames)
+        own = np.zeros((count, count), bool)
+        pairs = _watched_pairs(self.model)
+        frames = self.model.molecule.part_frames
+        for i, j in pairs:
+            a, b = (self.limb_frames.index(int(frames[k])) for k in (i, j))
+            own[a, b] = own[b, a] = True
+        return own
+
+    def free(self, first: int, last: int) -> Integers:
+        """Numbers of the free arrangements whose base poses are ``first`` to ``last`` - 1."""
+        return np.concatenate([np.zeros(0, np.int64), *self._pieces(first, last)])
+
+    def _pieces(self, first: int, last: int) -> Iterator[Integers]:
+        limbs, shapes, placements, strides, levels, counts = self.tables
+        found = np.empty(max(FOUND_AT_ONCE, self.model.grid.joint_count), np.int64)
+        bases = self._bases(first, last)
+        at = 0
+        while at < len(bases):
+            written, at = packing_search.search_grid(
+                bases, at, len(bases), limbs, shapes, placements, strides, levels, counts,
+                self.own, self.model.crystal, self.model.required, found,
+            )
+            yield found[:written] + first * self.model.grid.joint_count
+
+    def _bases(self, first: int, last: int) -> Array:
+        return base_frames(self.model, self.model.grid.bases[first:last])
+
+
+def base_frames(model: PackingModel, poses: Array) -> Array:
+    """Frames (m, FRAME) of the molecule's base for its coordinates (m, base_count)."""
+    whole = model.molecule
+    frames = np.zeros((len(poses), molecule.FRAME))
+    frames[:, [0, 4, 8]] = 1.0
+    if whole.base_count:
+        arrays = (whole.kinds, whole.parents, whole.origins, whole.axes)
+        packing.base_frames(*(array[: whole.base_count] for array in arrays), poses, frames)
+    return frames
+
+
+def _watched_pairs(model: PackingModel) -> list[tuple[int, int]]:
+    """Parts of one molecule that must keep apart: not in one limb, nor joined, nor ignored."""
+    robot = model.molecule.robot
+    frames = model.molecule.part_frames
+    joined = {frozenset((joint.parent, joint.child)) for joint in robot.joints}
+    free = joined | robot.ignored
+    links = robot.part_links
+    return [
+        (i, j)
+        for j in range(len(links))
+        for i in range(j)
+        if frames[i] != frames[j] and frozenset((links[i], links[j])) not in free
+    ]
+
+
+def _shape_rows(model: PackingModel, parts: Integers) -> Array:
+    """Rows (m, BODY) of parts in their coordinates' frames, for kernels.packing."""
+    rows = np.zeros((len(parts), layout.BODY))
+    posed = model.molecule.parts[parts]
+    rows[:, layout.BODY_CENTRE : layout.BODY_CENTRE + 12] = posed
+    for row, matrix in zip(rows, posed[:, 3:].reshape(-1, 3, 3), strict=True):
+        axes = np.linalg.norm(matrix, axis=0)
+        # A = R diag(a) has the inverse diag(1/a²) Aᵀ, exact for needles, too.
+        row[layout.BODY_INVERSE : layout.BODY_INVERSE + 9] = (matrix / axes**2).T.ravel()
+        used = axes[: model.dimension]
+        row[layout.BODY_RADIUS], row[packing.INSCRIBED] = used.max(), used.min()
+    return rows
+
+
+def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.bool_]:
+    """Whether each arrangement (m, K) is free; True is proved."""
+    whole = model.molecule
+    pairs = np.zeros((len(whole.parts), len(whole.parts)), bool)
+    for i, j in _watched_pairs(model):
+        pairs[i, j] = True
+    shapes = _shape_rows(model, np.arange(len(whole.parts)))
+    free = np.empty(len(configurations), bool)
+    packing.arrangements_free(
+        whole.kinds, whole.parents, whole.origins, whole.axes, whole.part_frames, shapes, pairs,
+        model.crystal, model.required, np.ascontiguousarray(configurations), free,
+    )
+    return free

@@ -1,0 +1,109 @@
+"""The format of packing models and of targets as pydantic models: keys, types and ranges."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+
+from pydantic import BeforeValidator, Field, StrictStr
+
+from ellipsoid_planning.scenario_blocks import Block, Name, Number, Positive
+from ellipsoid_planning.scenario_format import whole
+from ellipsoid_planning.scenario_format_robot import RobotBlock
+
+Lengths = Annotated[list[Positive], Field(min_length=2, max_length=3)]
+
+
+class CellBlock(Block):
+    """The unit cell's parameters; right angles by default."""
+
+    lengths: Lengths
+    angles_deg: Annotated[list[Positive], Field(min_length=1, max_length=3)] | None = None
+
+
+class RangeBlock(Block):
+    """The values of one coordinate that are searched, in its unit (degrees for an angle).
+
+    ``nodes`` says where in the steps the values stand: in the middle of each (``centres``), or at
+    their ends (``ends``), both limits included.
+    """
+
+    lower: Number | None = None
+    upper: Number | None = None
+    step: Positive | None = None
+    nodes: Literal["centres", "ends"] = "centres"
+
+
+class OrientationBlock(Block):
+    """Which orientations of the molecule are searched: ranges of angles, or a grid by name."""
+
+    yaw_deg: RangeBlock | None = Field(None, description="2-D: the heading")
+    euler: StrictStr = Field("ZXZ", description="3-D: axes of the three turns, intrinsic")
+    alpha_deg: RangeBlock | None = Field(None, description="3-D: the first turn")
+    beta_deg: RangeBlock | None = Field(None, description="3-D: the second turn")
+    gamma_deg: RangeBlock | None = Field(None, description="3-D: the third turn")
+    grid: StrictStr | None = Field(None, description="3-D: all rotations, by a grid of this name")
+    resolution_deg: Positive | None = Field(None, description="3-D: how fine that grid is")
+
+
+class PositionBlock(Block):
+    """Along which of the cell's axes the molecule's base is shifted, and by how much."""
+
+    x: RangeBlock | None = None
+    y: RangeBlock | None = None
+    z: RangeBlock | None = None
+
+
+class SearchBlock(Block):
+    """The grid of arrangements; what is not named does not move (joints: stand at zero)."""
+
+    position: PositionBlock = PositionBlock()
+    orientation: OrientationBlock | None = None
+    joints: dict[StrictStr, RangeBlock] = Field(
+        default={}, description="NAME_deg (an angle) or NAME (a shift); limits are the joint's"
+    )
+
+
+class DiffractionBlock(Block):
+    """What is compared with the data."""
+
+    resolution: Positive = Field(description="smallest spacing of the lattice planes, d_min")
+    densities: dict[StrictStr, Positive] = Field(
+        default={}, description="electrons per volume of a link by name, 1 by default"
+    )
+
+
+class PackingModelBlock(Block):
+    """A packing model: a molecule, its cell and group, and the arrangements to search."""
+
+    misplaced: ClassVar[Mapping[str, str]] = {
+        "robot": "a packing model has a molecule; rename this key to molecule"
+    }
+
+    format: Annotated[Literal[1], BeforeValidator(whole)]
+    name: Name
+    description: StrictStr = ""
+    dimension: Annotated[Literal[2, 3], BeforeValidator(whole)]
+    group: StrictStr | int
+    cell: CellBlock
+    molecule: RobotBlock
+    search: SearchBlock
+    diffraction: DiffractionBlock
+
+
+class TargetBlock(Block):
+    """A target: the arrangement whose magnitudes are to be found again."""
+
+    format: Annotated[Literal[1], BeforeValidator(whole)]
+    name: Name
+    description: StrictStr = ""
+    configuration: dict[StrictStr, Number] = Field(
+        description="every coordinate of the model by its key: x, alpha_deg, left_ear_deg, ..."
+    )
+
+
+def packing_model_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of packing models."""
+    schema = PackingModelBlock.model_json_schema()
+    dialect = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": dialect, **schema, "title": "ellipsoid-planning packing model, format 1"}

@@ -1,0 +1,69 @@
+"""The values that a search gives each coordinate of a molecule."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.errors import CrystalError
+
+Array = NDArray[np.float64]
+
+# A step that fits the range but for this share of it, fits: 30° into 180° in radians, say.
+FITS = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """An interval of one coordinate, cut into equal steps.
+
+    Attributes:
+        lower, upper: the interval's ends, angles in [rad].
+        step: the width of a step, at most the interval's.
+        values: (m,), the grid's values: the steps' centres or their ends, read-only.
+    """
+
+    lower: float
+    upper: float
+    step: float
+    values: Array
+
+    @classmethod
+    def of(cls, lower: float, upper: float, step: float, nodes: str = "centres") -> Range:
+        """The range from ``lower`` to ``upper``; ``nodes`` is ``centres`` or ``ends``.
+
+        Raises:
+            CrystalError: if the interval is empty, or no whole number of steps long.
+        """
+        if not lower < upper:
+            raise CrystalError(
+                f"expected lower < upper, got {lower:g} and {upper:g}; exchange or correct them"
+            )
+        count = round((upper - lower) / step)
+        if count < 1 or abs(count * step - (upper - lower)) > FITS * (upper - lower):
+            raise CrystalError(
+                f"expected a step that divides the range of {upper - lower:g}, got {step:g}; "
+                f"write {(upper - lower) / max(count, 1):g}, say"
+            )
+        inside = np.arange(count) + 0.5 if nodes == "centres" else np.arange(count + 1.0)
+        values = lower + inside * ((upper - lower) / count)
+        values.setflags(write=False)
+        return cls(float(lower), float(upper), (upper - lower) / count, values)
+
+    @classmethod
+    def fixed(cls, value: float) -> Range:
+        """One value only."""
+        values = np.array([float(value)])
+        values.setflags(write=False)
+        return cls(float(value), float(value), 0.0, values)
+
+    @property
+    def cells(self) -> Array:
+        """(m, 2), the steps' ends: where a search cell by cell stays; one point if fixed."""
+        if self.step == 0.0:
+            return np.array([[self.lower, self.upper]])
+        count = round((self.upper - self.lower) / self.step)
+        edges = np.linspace(self.lower, self.upper, count + 1)
+        return np.stack([edges[:-1], edges[1:]], axis=1)

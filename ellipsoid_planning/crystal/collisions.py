@@ -48,7 +48,9 @@ class GridSearch:
         strides = np.zeros((len(self.limb_frames), len(counts)), np.int64)
         limbs = np.zeros((len(self.limb_frames), 5), np.int64)
         levels = np.full(len(self.limb_frames), -1, np.int64)
-        placements, shapes, rows = [], [], 0
+        placements: list[Array] = []
+        shapes: list[Array] = []
+        rows = 0
         for limb, frame in enumerate(self.limb_frames):
             chain = self.chain(frame)
             poses = 1
@@ -56,7 +58,8 @@ class GridSearch:
                 strides[limb, joint] = poses
                 poses *= counts[joint]
             parts = np.flatnonzero(self.model.molecule.part_frames == frame)
-            limbs[limb] = sum(map(len, placements)), poses, sum(map(len, shapes)), len(parts), rows
+            before = sum(len(p) for p in placements), sum(len(s) for s in shapes)
+            limbs[limb] = before[0], poses, before[1], len(parts), rows
             levels[limb] = max(chain, default=-1)
             placements.append(self._placements(chain, frame))
             shapes.append(self._shapes(parts))
@@ -75,8 +78,11 @@ class GridSearch:
         base = self.model.molecule.base_count
         whole = self.model.molecule
         values = [self.model.grid.joint_values[joint] for joint in chain]
-        grid = np.stack(np.meshgrid(*values, indexing="ij"), -1).reshape(-1, len(chain)) if chain \
+        grid = (
+            np.stack(np.meshgrid(*values, indexing="ij"), -1).reshape(-1, len(chain))
+            if chain
             else np.zeros((1, 0))
+        )
         found = np.zeros((len(grid), molecule.FRAME))
         found[:, [0, 4, 8]] = 1.0
         if not chain:
@@ -113,8 +119,19 @@ class GridSearch:
         at = 0
         while at < len(bases):
             written, at = packing_search.search_grid(
-                bases, at, len(bases), limbs, shapes, placements, strides, levels, counts,
-                self.own, self.model.crystal, self.model.required, found,
+                bases,
+                at,
+                len(bases),
+                limbs,
+                shapes,
+                placements,
+                strides,
+                levels,
+                counts,
+                self.own,
+                self.model.crystal,
+                self.model.required,
+                found,
             )
             yield found[:written] + first * self.model.grid.joint_count
 
@@ -171,7 +188,16 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
     shapes = _shape_rows(model, np.arange(len(whole.parts)))
     free = np.empty(len(configurations), bool)
     packing.arrangements_free(
-        whole.kinds, whole.parents, whole.origins, whole.axes, whole.part_frames, shapes, pairs,
-        model.crystal, model.required, np.ascontiguousarray(configurations), free,
+        whole.kinds,
+        whole.parents,
+        whole.origins,
+        whole.axes,
+        whole.part_frames,
+        shapes,
+        pairs,
+        model.crystal,
+        model.required,
+        np.ascontiguousarray(configurations),
+        free,
     )
     return free

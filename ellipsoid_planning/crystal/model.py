@@ -84,8 +84,8 @@ class PackingModel:
         if n == 2:  # no copies above or below the plane
             basis[2, 2] = 8.0 * float(np.linalg.norm(self.cell.basis, axis=0).max())
             basis[2, 2] += 8.0 * max(float(part.semi_axes.max()) for part in self.parts)
-        inverse = np.linalg.inv(basis)
-        return operations, basis, inverse, np.linalg.norm(inverse, axis=1)
+        inverse = np.linalg.inv(basis).astype(float)
+        return operations, basis, inverse, np.sqrt((inverse**2).sum(axis=1))
 
     @property
     def parts(self) -> tuple[Any, ...]:
@@ -137,9 +137,7 @@ class PackingModel:
         missing = [key for key in self.keys if key not in values]
         if unknown or missing:
             what = f"{unknown[0]!r} is no coordinate" if unknown else f"{missing[0]!r} is missing"
-            raise CrystalError(
-                f"{what}; the coordinates of {self.name} are {', '.join(self.keys)}"
-            )
+            raise CrystalError(f"{what}; the coordinates of {self.name} are {', '.join(self.keys)}")
         given = np.array([values[key] for key in self.keys], dtype=float)
         turns = [coordinate.turns for coordinate in self.molecule.coordinates]
         return np.where(turns, np.radians(given), given)

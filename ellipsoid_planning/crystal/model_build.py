@@ -128,7 +128,7 @@ class _Builder:
 
     def _molecule(self, cell: UnitCell) -> Molecule:
         search = self._block.search
-        robot = robot_of(self._entries, self._block.molecule, Pose())
+        robot = robot_of(self._entries, self._block.molecule, Pose.model_validate({}))
         if isinstance(robot, RigidRobot):
             robot = ArticulatedRobot((Link("molecule", robot.parts),), ())
         if robot.base != FREE_BASE:
@@ -149,7 +149,12 @@ class _Builder:
             raise self._origin.error(("search", "position", "z"), "there is no z in the plane")
         turns = "" if search.orientation is None else search.orientation.euler
         return self._at(
-            ("molecule",), molecule_of, robot, cell.basis, shifts, turns,
+            ("molecule",),
+            molecule_of,
+            robot,
+            cell.basis,
+            shifts,
+            turns,
             self._block.diffraction.densities,
         )
 
@@ -175,9 +180,7 @@ class _Builder:
         ]
         turned, turns = self._turns(block.orientation)
         joints = self._joints(molecule)
-        return ArrangementGrid(
-            (*ranges, *turned, *joints), molecule.base_count, len(shifts), turns
-        )
+        return ArrangementGrid((*ranges, *turned, *joints), molecule.base_count, len(shifts), turns)
 
     def _shift(self, name: str, block: RangeBlock, length: float) -> Range:
         return self._range(block, ("search", "position", name), (0.0, length), 1.0)
@@ -226,16 +229,14 @@ class _Builder:
                 "ZXZ; add resolution_deg, or give ranges of angles",
             )
         try:
-            grid = grid_by_name(block.grid, resolution_deg=block.resolution_deg)
+            grid = grid_by_name(block.grid or "", resolution_deg=block.resolution_deg)
         except GridError as error:
             raise self._origin.error((*place, "grid"), str(error)) from None
         with np.errstate(all="ignore"):
             turns = _euler(Rotation.from_quat(grid.quaternions()))
         step = math.radians(block.resolution_deg)
         whole = [(-math.pi, math.pi), (0.0, math.pi), (-math.pi, math.pi)]
-        return [
-            Range(low, high, step, np.array([0.0])) for low, high in whole
-        ], turns
+        return [Range(low, high, step, np.array([0.0])) for low, high in whole], turns
 
     def _joints(self, molecule: Molecule) -> list[Range]:
         keys = {c.key: c for c in molecule.coordinates[molecule.base_count :]}

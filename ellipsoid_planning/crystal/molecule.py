@@ -7,7 +7,7 @@ Order of coordinates: the base's shifts along the cell's axes (those that are fr
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,7 +19,6 @@ from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import molecule as kernels
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.joint import BALL, FIXED, PRISMATIC, Joint
-from ellipsoid_planning.robots.tree import joints_in_order
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -114,9 +113,7 @@ class Molecule:
         """All parts in the world, as ellipsoids of the molecule's dimension."""
         frames, n = self.frames(configuration), self.dimension
         placed = []
-        for part, local, frame in zip(
-            self.robot.parts, self._poses, self.part_frames, strict=True
-        ):
+        for part, local, frame in zip(self.robot.parts, self._poses, self.part_frames, strict=True):
             rotation, position = local
             if frame != WORLD:
                 outer = frames[frame, :9].reshape(3, 3)
@@ -206,14 +203,22 @@ def _base_coordinates(
 
 
 def _moving(robot: ArticulatedRobot) -> list[Joint]:
-    return [joint for joint in joints_in_order(robot.joints, robot.root) if joint.type != FIXED]
+    return [joint for joint in _chain_by_chain(robot, robot.root) if joint.type != FIXED]
+
+
+def _chain_by_chain(robot: ArticulatedRobot, link: str) -> Iterator[Joint]:
+    """The joints below a link, each followed by all that it carries: searches prune early."""
+    for joint in robot.joints:
+        if joint.parent == link:
+            yield joint
+            yield from _chain_by_chain(robot, joint.child)
 
 
 def _link_poses(robot: ArticulatedRobot, base: int) -> dict[str, tuple[int, Array, Array]]:
     """Each link's coordinate, and its rotation and position in that coordinate's frame."""
     found = {robot.root: (base - 1, np.eye(3), np.zeros(3))}
     moving = iter(range(base, base + len(_moving(robot))))
-    for joint in joints_in_order(robot.joints, robot.root):
+    for joint in _chain_by_chain(robot, robot.root):
         frame, rotation, position = found[joint.parent]
         if joint.type == FIXED:
             turned = rotation @ _deep(joint.rotation)

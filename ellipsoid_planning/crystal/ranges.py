@@ -48,7 +48,7 @@ class Range:
                 f"write {(upper - lower) / max(count, 1):g}, say"
             )
         inside = np.arange(count) + 0.5 if nodes == "centres" else np.arange(count + 1.0)
-        values = lower + inside * ((upper - lower) / count)
+        values: Array = np.asarray(lower + inside * ((upper - lower) / count), dtype=float)
         values.setflags(write=False)
         return cls(float(lower), float(upper), (upper - lower) / count, values)
 

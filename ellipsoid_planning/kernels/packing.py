@@ -74,10 +74,12 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
 
     Args:
         bodies: (b, BODY).
-        i, j: rows of ``bodies``.
+        i: a row of ``bodies``.
+        j: another one, or the same.
         same: whether they are the same part; then half of the translations suffices.
         operations: (m, OPERATION), the identity first.
-        basis, inverse: (3, 3), B and its inverse.
+        basis: (3, 3), B.
+        inverse: (3, 3), its inverse.
         reaches: (3,), the lengths of the rows of ``inverse``.
         required: the distance to be proved, at least what rounding needs.
         copy: (1, PLACED), scratch.
@@ -98,12 +100,12 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
             slack * reaches[1] + 1e-9,
             slack * reaches[2] + 1e-9,
         )
-        first = int(math.ceil(-w0 - d0))
+        first = math.ceil(-w0 - d0)
         if same and g == 0:
             first = max(first, 0)
-        for v0 in range(first, int(math.floor(w0 - d0)) + 1):
-            for v1 in range(int(math.ceil(-w1 - d1)), int(math.floor(w1 - d1)) + 1):
-                for v2 in range(int(math.ceil(-w2 - d2)), int(math.floor(w2 - d2)) + 1):
+        for v0 in range(first, math.floor(w0 - d0) + 1):
+            for v1 in range(math.ceil(-w1 - d1), math.floor(w1 - d1) + 1):
+                for v2 in range(math.ceil(-w2 - d2), math.floor(w2 - d2) + 1):
                     if g == 0 and v0 == 0 and v1 == 0 and (v2 == 0 or (same and v2 < 0)):
                         continue
                     if g == 0 and same and v0 == 0 and v1 < 0:
@@ -189,9 +191,8 @@ def arrangements_free(
             for i in range(j + 1):
                 if not free[index]:
                     break
-                if pairs[i, j] and not own_apart(bodies, i, j, required, copy):
-                    free[index] = False
-                elif not copies_apart(
+                own = not pairs[i, j] or own_apart(bodies, i, j, required, copy)
+                if not own or not copies_apart(
                     bodies, i, j, i == j, operations, basis, inverse, reaches, required, copy
                 ):
                     free[index] = False

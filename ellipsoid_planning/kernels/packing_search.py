@@ -37,14 +37,26 @@ def limbs_apart(
 
 @released
 def search_grid(
-    bases, first, last, limbs, shapes, placements, strides, levels, counts, own, crystal,
-    required, found,
+    bases,
+    first,
+    last,
+    limbs,
+    shapes,
+    placements,
+    strides,
+    levels,
+    counts,
+    own,
+    crystal,
+    required,
+    found,
 ):
     """Write the free arrangements of the base poses ``first`` to ``last``; (how many, next pose).
 
     Args:
         bases: (N, FRAME), all poses of the base.
-        first, last: the range of them to look at.
+        first: the first of them to look at.
+        last: the one after the last of them.
         limbs: (L, 5): first row in ``placements``, number of poses, first row in ``shapes``,
             number of parts, first row of its bodies in the table of all poses' bodies.
         shapes: (P, BODY), parts in their limb's frame.
@@ -82,8 +94,9 @@ def search_grid(
     for base in range(first, last):
         if written + total > found.size:
             return written, base
-        if not _start_base(bases, base, limbs, shapes, placements, own, crystal, required,
-                           bodies, frame, copy):
+        if not _start_base(
+            bases, base, limbs, shapes, placements, crystal, required, bodies, frame, copy
+        ):
             continue
         pairs[:] = UNKNOWN
         alone[:] = UNKNOWN
@@ -96,8 +109,25 @@ def search_grid(
             free = True
             while level < joints:
                 free = _level_free(
-                    level, bases, base, limbs, shapes, placements, strides, levels, own, crystal,
-                    required, bodies, frame, copy, digits, poses, alone, pairs, pair_first,
+                    level,
+                    bases,
+                    base,
+                    limbs,
+                    shapes,
+                    placements,
+                    strides,
+                    levels,
+                    own,
+                    crystal,
+                    required,
+                    bodies,
+                    frame,
+                    copy,
+                    digits,
+                    poses,
+                    alone,
+                    pairs,
+                    pair_first,
                 )
                 if not free:
                     break
@@ -122,14 +152,20 @@ def search_grid(
 
 
 @released
-def _start_base(
-    bases, base, limbs, shapes, placements, own, crystal, required, bodies, frame, copy
-):
+def _start_base(bases, base, limbs, shapes, placements, crystal, required, bodies, frame, copy):
     """Place the base's bodies, and see whether their copies keep apart."""
     _place_limb(bases, base, limbs, shapes, placements, 0, 0, bodies, frame)
     return limbs_apart(
-        bodies, limbs[0, 4], limbs[0, 3], limbs[0, 4], limbs[0, 3], True, False, crystal,
-        required, copy,
+        bodies,
+        limbs[0, 4],
+        limbs[0, 3],
+        limbs[0, 4],
+        limbs[0, 3],
+        True,
+        False,
+        crystal,
+        required,
+        copy,
     )
 
 
@@ -145,8 +181,25 @@ def _place_limb(bases, base, limbs, shapes, placements, limb, pose, bodies, fram
 
 @released
 def _level_free(
-    level, bases, base, limbs, shapes, placements, strides, levels, own, crystal, required,
-    bodies, frame, copy, digits, poses, alone, pairs, pair_first,
+    level,
+    bases,
+    base,
+    limbs,
+    shapes,
+    placements,
+    strides,
+    levels,
+    own,
+    crystal,
+    required,
+    bodies,
+    frame,
+    copy,
+    digits,
+    poses,
+    alone,
+    pairs,
+    pair_first,
 ):
     """Whether the limbs that joint ``level`` settles keep apart from all before them."""
     joints = strides.shape[1]
@@ -163,17 +216,21 @@ def _level_free(
         if alone[state] == UNKNOWN:
             _place_limb(bases, base, limbs, shapes, placements, limb, pose, bodies, frame)
             free = limbs_apart(
-                bodies, limbs[0, 4], limbs[0, 3], row, count, False, own[0, limb], crystal,
-                required, copy,
-            ) and limbs_apart(
-                bodies, row, count, row, count, True, False, crystal, required, copy
-            )
+                bodies,
+                limbs[0, 4],
+                limbs[0, 3],
+                row,
+                count,
+                False,
+                own[0, limb],
+                crystal,
+                required,
+                copy,
+            ) and limbs_apart(bodies, row, count, row, count, True, False, crystal, required, copy)
             alone[state] = FREE if free else BLOCKED
         if alone[state] == BLOCKED:
             return False
         for other in range(1, limb):
-            if levels[other] > level:
-                continue
             entry = pair_first[limb, other] + pose * limbs[other, 1] + poses[other]
             if pairs[entry] == UNKNOWN:
                 size = limbs[other, 3]

@@ -12,6 +12,7 @@ from ellipsoid_planning.crystal.integer_linear import lattice_basis
 from ellipsoid_planning.crystal.operation import (
     Matrix,
     Operation,
+    determinant,
     inverse,
     multiply,
     unit_matrix,
@@ -24,8 +25,8 @@ class PrimitiveGroup:
     """A space group whose translations are exactly the integer vectors of its basis.
 
     Attributes:
-        basis: n rows of n fractions, the columns are the primitive vectors in units of the cell
-            that the group was given in.
+        basis: n rows of n fractions, the columns are the primitive vectors, right-handed, in units
+            of the cell that the group was given in.
         operations: one for each linear part, the identity first, in the primitive basis; matrices
             of integers, translations in [0, 1).
     """
@@ -54,17 +55,6 @@ class PrimitiveGroup:
                 chosen.append(operation)
                 reached = _generated([op.rotation for op in chosen])
         return tuple(chosen)
-
-    def in_basis(self, change: Matrix) -> PrimitiveGroup:
-        """The same group in another primitive basis, the columns of a unimodular matrix."""
-        back = inverse(change)
-        moved = (
-            Operation(multiply(multiply(back, op.rotation), change), times(back, op.translation))
-            for op in self.operations
-        )
-        return PrimitiveGroup(
-            multiply(self.basis, change), tuple(operation.modulo() for operation in moved)
-        )
 
 
 def primitive(operations: Sequence[Operation]) -> PrimitiveGroup:
@@ -97,7 +87,10 @@ def _primitive_basis(centrings: list[tuple[Fraction, ...]], dimension: int) -> M
     size = lcm(*(entry.denominator for vector in centrings for entry in vector))
     vectors = [[int(entry * size) for entry in vector] for vector in centrings]
     vectors += [[size * int(i == j) for j in range(dimension)] for i in range(dimension)]
-    rows = [[Fraction(entry, size) for entry in row] for row in lattice_basis(vectors)]
+    rows = [tuple(Fraction(entry, size) for entry in row) for row in lattice_basis(vectors)]
+    if determinant(tuple(rows)) < 0:
+        # Handedness tells enantiomorphic types apart.
+        rows[-1] = tuple(-entry for entry in rows[-1])
     return tuple(zip(*rows, strict=True))
 
 

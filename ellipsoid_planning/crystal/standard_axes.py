@@ -103,9 +103,7 @@ def _columns(system: System, rotations: Sequence[Matrix]) -> list[Vector]:
     if system in ("orthorhombic", "cubic"):
         return _three_axes(turns)
     order = 3 if system == "hexagonal" else 4
-    turn = next(
-        turn for turn in turns if rotation_order(turn) == order and determinant(turn) == 1
-    )
+    turn = next(turn for turn in turns if rotation_order(turn) == order and determinant(turn) == 1)
     shortest = _reduced(_plane(turn), rotations)[0]
     plane = [shortest, apply(turn, shortest)]
     return plane if dimension == 2 else [*plane, _axis(turn)]
@@ -154,13 +152,11 @@ def _reduced(pair: list[Vector], rotations: Sequence[Matrix]) -> tuple[Vector, V
 
 def _product(first: Vector, second: Vector, rotations: Sequence[Matrix]) -> Fraction:
     """The scalar product, averaged over the group; up to a factor."""
-    return sum(
-        (
-            sum((a * b for a, b in zip(apply(w, first), apply(w, second), strict=True)), Fraction(0))
-            for w in rotations
-        ),
-        Fraction(0),
-    )
+    total = Fraction(0)
+    for rotation in rotations:
+        pairs = zip(apply(rotation, first), apply(rotation, second), strict=True)
+        total += sum((a * b for a, b in pairs), Fraction(0))
+    return total
 
 
 def _plus(turn: Matrix, factor: int) -> list[list[int]]:

@@ -11,6 +11,7 @@ from planners.cli.benchmark import benchmark
 from planners.cli.command_group import CommandGroup
 from planners.cli.family import family
 from planners.cli.figure import figure
+from planners.cli.group import app as group
 from planners.cli.import_urdf import urdf
 from planners.cli.interrupt import end_on_interrupt
 from planners.cli.joints import joints
@@ -94,6 +95,7 @@ def _imports() -> None:
 
 
 app.add_typer(imports, name="import")
+app.add_typer(group, name="group")
 
 
 def main() -> None:

@@ -101,7 +101,7 @@ class GridSearch:
         """(L, L), which two limbs of one molecule are looked at for collisions."""
         count = len(self.limb_frames)
         own = np.zeros((count, count), bool)
-        pairs = _watched_pairs(self.model)
+        pairs = watched_pairs(self.model)
         frames = self.model.molecule.part_frames
         for i, j in pairs:
             a, b = (self.limb_frames.index(int(frames[k])) for k in (i, j))
@@ -150,7 +150,7 @@ def base_frames(model: PackingModel, poses: Array) -> Array:
     return frames
 
 
-def _watched_pairs(model: PackingModel) -> list[tuple[int, int]]:
+def watched_pairs(model: PackingModel) -> list[tuple[int, int]]:
     """Parts of one molecule that must keep apart: not in one limb, nor joined, nor ignored."""
     robot = model.molecule.robot
     frames = model.molecule.part_frames
@@ -183,7 +183,7 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
     """Whether each arrangement (m, K) is free; True is proved."""
     whole = model.molecule
     pairs = np.zeros((len(whole.parts), len(whole.parts)), bool)
-    for i, j in _watched_pairs(model):
+    for i, j in watched_pairs(model):
         pairs[i, j] = True
     shapes = _shape_rows(model, np.arange(len(whole.parts)))
     free = np.empty(len(configurations), bool)

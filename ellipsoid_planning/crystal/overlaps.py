@@ -1,0 +1,104 @@
+"""Where copies of a molecule overlap, or parts of one that should keep apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.crystal.copies import Copy
+from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+
+Array = NDArray[np.float64]
+STEPS = 50  # of bisection
+
+
+class Overlap(NamedTuple):
+    """The common region of two bodies.
+
+    Attributes:
+        first, second: the bodies.
+        inside: (n,), the point that is deepest in both, on the scale where a body's centre is at
+            0 and its boundary at 1.
+    """
+
+    first: Ellipsoid
+    second: Ellipsoid
+    inside: Array
+
+    def boundary(self, directions: Array) -> Array:
+        """The boundary points (m, n) seen from ``inside`` along directions (m, n)."""
+        reach = np.minimum(*(_reach(b, self.inside, directions) for b in (self.first, self.second)))
+        return np.asarray(self.inside + reach[:, None] * directions)
+
+
+def overlaps(model: PackingModel, drawn: Sequence[Copy]) -> list[Overlap]:
+    """All overlaps among these copies, in the order of their bodies.
+
+    Parts of one molecule that are joined, or are allowed to overlap, do not count.
+    """
+    from ellipsoid_planning.crystal.collisions import watched_pairs
+
+    bodies = [body for copy in drawn for body in copy.bodies]
+    pairs = _near_pairs(bodies)
+    owner, part = np.divmod(pairs, len(model.parts))
+    watched = {frozenset(pair) for pair in watched_pairs(model)}
+    own = [frozenset(row) in watched for row in part.tolist()]
+    return _meeting(bodies, pairs[(owner[:, 0] != owner[:, 1]) | np.array(own, dtype=bool)])
+
+
+def _near_pairs(bodies: Sequence[Ellipsoid]) -> NDArray[np.int64]:
+    """Pairs (k, 2) whose circumscribed balls meet."""
+    centres = np.array([body.centre for body in bodies])
+    radii = np.array([body.semi_axes.max() for body in bodies])
+    found = [np.zeros((0, 2), dtype=np.int64)]
+    for i in range(len(bodies)):
+        distance = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1)
+        near = i + 1 + np.flatnonzero(distance < radii[i + 1 :] + radii[i])
+        found.append(np.column_stack([np.full(len(near), i), near]))
+    return np.concatenate(found)
+
+
+def _meeting(bodies: Sequence[Ellipsoid], pairs: NDArray[np.int64]) -> list[Overlap]:
+    """Those pairs (k, 2) that overlap.
+
+    The minimiser of λF + (1-λ)G of two bodies' quadratic forms runs from one centre to the other
+    as λ goes from 0 to 1; where F = G it is deepest in both (Perram and Wertheim 1985).
+    """
+    if not len(pairs):
+        return []
+    centres = np.array([body.centre for body in bodies])[pairs]
+    inverse = np.array([np.linalg.inv(body.matrix) for body in bodies])[pairs]
+    forms = np.swapaxes(inverse, -1, -2) @ inverse
+    low, high = np.zeros(len(pairs)), np.ones(len(pairs))
+    for _ in range(STEPS):
+        share = 0.5 * (low + high)
+        points, values = _minimisers(forms, centres, share)
+        before = values[:, 0] > values[:, 1]
+        low, high = np.where(before, share, low), np.where(before, high, share)
+    return [
+        Overlap(bodies[i], bodies[j], point)
+        for (i, j), point, value in zip(pairs.tolist(), points, values.max(axis=1), strict=True)
+        if value < 1.0
+    ]
+
+
+def _minimisers(forms: Array, centres: Array, share: Array) -> tuple[Array, Array]:
+    """Points (k, n) and the two forms' values (k, 2) there."""
+    weights = np.stack([share, 1.0 - share], axis=1)[:, :, None]
+    pulled = weights * np.einsum("kaij,kaj->kai", forms, centres)
+    total = (weights[..., None] * forms).sum(axis=1)
+    points = np.linalg.solve(total, pulled.sum(axis=1)[:, :, None])[:, :, 0]
+    away = points[:, None] - centres
+    return points, np.einsum("kai,kaij,kaj->ka", away, forms, away)
+
+
+def _reach(body: Ellipsoid, origin: Array, directions: Array) -> Array:
+    """How far (m,) a body extends along directions (m, n) from a point inside it."""
+    inverse = np.linalg.inv(body.matrix)
+    start, way = inverse @ (origin - body.centre), directions @ inverse.T
+    square, half = (way**2).sum(axis=1), way @ start
+    return np.asarray((-half + np.sqrt(half**2 + square * (1.0 - start @ start))) / square)

@@ -30,7 +30,7 @@ class RangeBlock(Block):
 
     lower: Number | None = None
     upper: Number | None = None
-    step: Positive | None = None
+    step: Positive
     nodes: Literal["centres", "ends"] = "centres"
 
 

@@ -77,10 +77,15 @@ class Molecule:
         return self.robot.dimension
 
     @cached_property
+    def part_volumes(self) -> Array:
+        """(P,), the parts' volumes, areas in the plane; read-only."""
+        ball = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
+        return _frozen(ball * np.array([np.prod(part.semi_axes) for part in self.robot.parts]))
+
+    @property
     def volume(self) -> float:
         """The sum of the parts' volumes (areas in the plane); overlaps count twice."""
-        ball = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
-        return ball * sum(float(np.prod(part.semi_axes)) for part in self.robot.parts)
+        return float(self.part_volumes.sum())
 
     def placed(self, configuration: ArrayLike) -> tuple[Array, Array]:
         """Centres (P, 3) and matrices A (P, 3, 3) of all parts in the world.

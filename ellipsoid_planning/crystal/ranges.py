@@ -59,6 +59,12 @@ class Range:
         values.setflags(write=False)
         return cls(float(value), float(value), 0.0, values)
 
+    def scaled(self, unit: float) -> Range:
+        """The range in another unit, π/180 to come from degrees to radians."""
+        values = self.values * unit
+        values.setflags(write=False)
+        return Range(self.lower * unit, self.upper * unit, self.step * unit, values)
+
     @property
     def cells(self) -> Array:
         """(m, 2), the steps' ends: where a search cell by cell stays; one point if fixed."""

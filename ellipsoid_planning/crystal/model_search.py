@@ -87,8 +87,10 @@ class SearchGrid:
                     f"expected {', '.join(wanted)} because the dimension is "
                     f"{self.molecule.dimension}; remove this",
                 )
-            if not given and key in wanted and block.grid is None:
-                raise self.origin.error(place, "this key is missing; add it, or name a grid")
+        for key in wanted:
+            if getattr(block, key) is None and block.grid is None:
+                problem = "this key is missing; add it, or name a grid"
+                raise self.origin.error((*ORIENTATION, key), problem)
 
     def _rotations(self, block: OrientationBlock) -> tuple[list[Range], NDArray[np.float64]]:
         """Ranges of the Euler angles, and those of a grid of all rotations (r, 3)."""

@@ -1,0 +1,151 @@
+"""Arrangements of a model that diffraction cannot tell from a given one.
+
+They are the images under the isometries of :mod:`~ellipsoid_planning.crystal.indistinguishable`
+and the group's own operations, as far as the molecule can make them: bodies count, not names, so
+that parts of one kind may take each other's place, and spheroids turn about their axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ellipsoid_planning.crystal.body_fit import body_unit, fit_bodies
+from ellipsoid_planning.crystal.indistinguishable import indistinguishable
+from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.crystal.operation import Operation
+from ellipsoid_planning.crystal.placed_bodies import Bodies
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+# Bodies that agree to this share of the largest semi-axis are the same.
+SAME = 1e-7
+# So many of the images that are nearest to the target are fitted, and none that is farther than
+# the nearest one that fits by this factor (of squared distances).
+ATTEMPTS = 8
+FARTHER = 4.0
+UNLIKE = 1e12
+
+
+@dataclass(frozen=True, eq=False)
+class Equivalent:
+    """An arrangement with the magnitudes of another.
+
+    Attributes:
+        configuration: (K,).
+        isometry: the isometry that it is the image under, group's operations left out.
+    """
+
+    configuration: Array
+    isometry: Operation
+
+
+@dataclass(frozen=True, eq=False)
+class Equivalents:
+    """What diffraction cannot tell apart in a model's arrangements."""
+
+    model: PackingModel
+
+    @cached_property
+    def isometries(self) -> tuple[Operation, ...]:
+        """Of the crystal's densities, modulo its group and free shifts; the identity first."""
+        return indistinguishable(self.model.group).isometries
+
+    @cached_property
+    def directions(self) -> Array:
+        """(c, 3), Cartesian: along these the whole crystal may be shifted by any amount."""
+        directions = indistinguishable(self.model.group).directions
+        found = np.zeros((len(directions), 3))
+        for row, direction in zip(found, directions, strict=True):
+            row[: self.model.dimension] = self.model.cell.cartesian(
+                np.array(direction, dtype=float)
+            )
+        return found
+
+    def near(self, found: ArrayLike, target: ArrayLike) -> tuple[Equivalent, ...]:
+        """Equivalents of the arrangement ``found`` near ``target`` (both (K,)), nearest first.
+
+        The last is ``found`` itself.
+        """
+        start = np.asarray(target, dtype=float)
+        wanted = Bodies.of(self.model.molecule, np.asarray(found, dtype=float))
+        near = Bodies.of(self.model.molecule, start)
+        chosen: list[Equivalent] = []
+        farthest = np.inf
+        for away, isometry, bodies in self._images(wanted, near)[:ATTEMPTS]:
+            if away > farthest:
+                break
+            fit = fit_bodies(self.model.molecule, bodies, start, self.directions)
+            if fit.misfit < SAME:
+                chosen.append(Equivalent(fit.configuration, isometry))
+                farthest = min(farthest, FARTHER * away + SAME)
+        return (*chosen, Equivalent(np.asarray(found, dtype=float), self.isometries[0]))
+
+    def _images(self, bodies: Bodies, target: Bodies) -> list[tuple[float, Operation, Bodies]]:
+        """All images of bodies, each where it is nearest to the target, the nearest first."""
+        found = []
+        for isometry in self.isometries:
+            turned = bodies.moved(*self._cartesian(isometry))
+            for rotation, shift in self._operations():
+                image = turned.moved(rotation, shift)
+                image = image.moved(np.eye(3), self._way(image, target))
+                order, away = self._order(image, target)
+                found.append((away, isometry, image.permuted(order)))
+        return sorted(found, key=lambda one: one[0])
+
+    def _operations(self) -> Iterator[tuple[Array, Array]]:
+        for row in self.model.crystal[0]:
+            yield row[:9].reshape(3, 3), row[9:]
+
+    def _cartesian(self, isometry: Operation) -> tuple[Array, Array]:
+        n = self.model.dimension
+        rotation, shift = np.eye(3), np.zeros(3)
+        rotation[:n, :n] *= float(isometry.rotation[0][0])  # linear parts are ± 1
+        shift[:n] = self.model.cell.cartesian(np.array(isometry.translation, dtype=float))
+        return rotation, shift
+
+    def _way(self, image: Bodies, target: Bodies) -> Array:
+        """The lattice vector plus free shift that brings an image's middle to the target's."""
+        way = (self._weights[:, None] * (target.centres - image.centres)).sum(axis=0)
+        free = np.zeros(3)
+        if len(self.directions):
+            shares = np.linalg.lstsq(self.directions.T, way, rcond=None)[0]
+            free = shares @ self.directions
+        _, basis, inverse, _ = self.model.crystal
+        return free + basis @ np.round(inverse @ (way - free))
+
+    @cached_property
+    def _weights(self) -> Array:
+        parts = self.model.parts
+        volumes = np.array([float(np.prod(part.semi_axes)) for part in parts])
+        return volumes / volumes.sum()
+
+    @cached_property
+    def _unlike(self) -> NDArray[np.bool_]:
+        """(P, P), whether two parts differ in size or density."""
+        kinds = [
+            np.append(np.sort(part.semi_axes), density)
+            for part, density in zip(
+                self.model.parts, self.model.molecule.densities.tolist(), strict=True
+            )
+        ]
+        return np.array(
+            [[not np.allclose(a, b, rtol=1e-12, atol=0.0) for b in kinds] for a in kinds]
+        )
+
+    def _order(self, image: Bodies, target: Bodies) -> tuple[Integers, float]:
+        """Which part of an image goes with each of the target's, and how far all are away."""
+        from scipy.optimize import linear_sum_assignment
+
+        unit = body_unit(self.model.molecule)
+        centres = image.centres[None] - target.centres[:, None]
+        shapes = image.shapes[None] - target.shapes[:, None]
+        away = (centres**2).sum(axis=2) / unit**2 + (shapes**2).sum(axis=(2, 3)) / unit**4
+        away *= self._weights[:, None]
+        rows, columns = linear_sum_assignment(np.where(self._unlike, UNLIKE, away))
+        return columns.astype(np.int64), float(away[rows, columns].sum())

@@ -1,0 +1,121 @@
+import numpy as np
+import pytest
+
+from ellipsoid_planning.crystal.body_fit import fit_bodies
+from ellipsoid_planning.crystal.catalogue import space_group
+from ellipsoid_planning.crystal.equivalents import Equivalents
+from ellipsoid_planning.crystal.indistinguishable import indistinguishable
+from ellipsoid_planning.crystal.model import load_model
+from ellipsoid_planning.crystal.operation import Operation
+from ellipsoid_planning.crystal.placed_bodies import Bodies, body_rates
+
+from .diffraction import lattice_points, magnitudes, random_configurations
+
+MODELS = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
+
+
+@pytest.mark.parametrize(
+    ("name", "shifts", "inversions", "directions"),
+    [
+        ("p1", 1, 1, 2),
+        ("p2", 4, 0, 0),
+        ("p3", 3, 3, 0),
+        ("P1", 1, 1, 3),
+        ("P-1", 8, 0, 0),
+        ("P2", 4, 4, 1),
+        ("Pm", 2, 2, 2),
+        ("P212121", 8, 8, 0),
+        ("C2221", 4, 4, 0),
+        ("P41", 2, 0, 1),
+        ("P41212", 4, 0, 0),
+        ("R3", 1, 1, 1),
+        ("I213", 1, 1, 0),
+        ("F432", 2, 2, 0),
+    ],
+)
+def test_the_isometries_are_those_of_the_normaliser(name, shifts, inversions, directions):
+    # The numbers of Tables 3.5.2 of International Tables A; P41 is its mirror image P43's twin.
+    group = space_group(name)
+    found = indistinguishable(group)
+    signs = [one.rotation[0][0] for one in found.isometries]
+    assert signs.count(1) == shifts
+    assert signs.count(-1) == inversions
+    assert len(found.directions) == directions
+    assert len(set(found.isometries)) == len(found.isometries)
+    assert found.isometries[0] == Operation.identity(group.dimension)
+
+
+@pytest.mark.parametrize("name", ["P212121", "C2221", "P41212", "I213", "R32", "F432", "p4", "p3"])
+def test_each_isometry_conjugates_the_group_into_itself(name):
+    group = space_group(name)
+    own = set(group.operations)
+    for isometry in indistinguishable(group).isometries:
+        back = isometry.inverse()
+        assert {(isometry @ one @ back).modulo() for one in group.operations} == own
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_equivalents_have_the_same_magnitudes(name):
+    model = load_model(name)
+    vectors = lattice_points(model, model.resolution)
+    equivalents = Equivalents(model)
+    rng = np.random.default_rng(3)
+    seen = set()
+    for target in random_configurations(model, 4, seed=2):
+        found = target + rng.normal(scale=0.1, size=len(target))
+        expected = magnitudes(model, found, vectors)
+        near = equivalents.near(found, target)
+        assert len(near) >= 2
+        for one in near:
+            seen.add(one.isometry)
+            got = magnitudes(model, one.configuration, vectors)
+            assert got == pytest.approx(expected, abs=1e-6 * expected.max())
+    assert seen <= set(equivalents.isometries)
+
+
+def test_the_rabbit_in_p1_has_a_twin_with_its_ears_exchanged():
+    model = load_model("rabbit-p1")
+    (found,) = random_configurations(model, 1, seed=5)
+    exchanged = found[[0, 1, 2, 5, 6, 3, 4]]
+    nearest = Equivalents(model).near(found, exchanged)[0]
+    assert nearest.isometry.triplet() == "-x,-y,-z"
+    assert nearest.configuration == pytest.approx(exchanged, abs=1e-8)
+
+
+def test_shifts_of_the_origin_count_for_nothing():
+    model = load_model("rabbit-p212121")
+    (target,) = random_configurations(model, 1, seed=6)
+    for axis in range(3):
+        found = target.copy()
+        found[axis] -= 11.0  # half the cell's edge
+        nearest = Equivalents(model).near(found, target)[0]
+        assert nearest.configuration == pytest.approx(target, abs=1e-8)
+
+
+def test_half_a_turn_counts_for_nothing_in_the_plane():
+    model = load_model("rabbit-plane")
+    (target,) = random_configurations(model, 1, seed=7)
+    for turns in (np.pi, -np.pi, 3.0 * np.pi):
+        found = target + turns * np.eye(3)[0]
+        nearest = Equivalents(model).near(found, target)[0]
+        assert nearest.configuration == pytest.approx(target, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_rates_of_bodies_are_their_difference_quotients(name):
+    molecule = load_model(name).molecule
+    (configuration,) = random_configurations(load_model(name), 1, seed=8)
+    centres, shapes = body_rates(molecule, configuration)
+    for k, step in enumerate(1e-6 * np.eye(len(configuration))):
+        up, down = (Bodies.of(molecule, configuration + sign * step) for sign in (1.0, -1.0))
+        assert centres[k] == pytest.approx((up.centres - down.centres) / 2e-6, abs=1e-7)
+        assert shapes[k] == pytest.approx((up.shapes - down.shapes) / 2e-6, abs=1e-6)
+
+
+def test_bodies_that_the_molecule_cannot_make_leave_a_misfit():
+    model = load_model("rabbit-p1")
+    (configuration,) = random_configurations(model, 1, seed=9)
+    bodies = Bodies.of(model.molecule, configuration)
+    torn = Bodies(bodies.centres + np.outer([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]), bodies.shapes)
+    assert fit_bodies(model.molecule, torn, configuration, np.eye(3)).misfit > 1e-3
+    assert fit_bodies(model.molecule, bodies, configuration, np.eye(3)).misfit < 1e-12

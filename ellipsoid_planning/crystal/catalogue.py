@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from functools import lru_cache
 from types import ModuleType
 from typing import Any
@@ -98,8 +99,12 @@ def _by_symbol(symbol: str, given: str) -> SpaceGroup:
 
 
 def _from_gemmi(found: Any) -> SpaceGroup:
-    operations = tuple(Operation.parse(op.triplet()) for op in found.operations())
-    return SpaceGroup(symbol_of(found), found.number, operations)
+    return SpaceGroup(symbol_of(found), found.number, tuple(map(_operation, found.operations())))
+
+
+def _operation(op: Any) -> Operation:
+    rotation = tuple(tuple(Fraction(entry, op.DEN) for entry in row) for row in op.rot)
+    return Operation(rotation, tuple(Fraction(entry, op.DEN) for entry in op.tran))
 
 
 def symbol_of(found: Any) -> str:

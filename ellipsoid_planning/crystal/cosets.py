@@ -44,7 +44,11 @@ def coset_spaces(group: SpaceGroup, elements: Iterable[int]) -> CosetSpaces:
     chosen = list(elements)
     verdict = is_subgroup(group, chosen)
     if not verdict.holds:
-        raise CrystalError(f"{verdict.message} Only a subgroup has cosets; add the product.")
+        i, j, k = (number + 1 for number in verdict.product or ())
+        raise CrystalError(
+            f"{group.name}: only subgroups have cosets, and these elements are none: "
+            f"g_{i} o g_{j} = g_{k} ({group.operations[k - 1]}) is not among them; add it"
+        )
     left = _classes(group.table[:, chosen])
     right = _classes(group.table[chosen, :].T)
     places = {coset: place for place, coset in enumerate(right)}

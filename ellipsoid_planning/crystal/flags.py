@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ellipsoid_planning.crystal.exact_matrix import apply, power_sum, unit_matrix
 from ellipsoid_planning.crystal.integer_linear import has_integer_solution, solve_modulo_one
-from ellipsoid_planning.crystal.operation import Operation, unit_matrix
+from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.primitive import primitive
 
 if TYPE_CHECKING:
@@ -62,16 +63,10 @@ def has_torsion(operation: Operation) -> bool:
 
     With N the sum of the powers of W, that is N (w + k) = 0 for a k of integers.
     """
-    unit = unit_matrix(operation.dimension)
-    linear = Operation(operation.rotation, (Fraction(0),) * operation.dimension)
-    total = [[int(entry) for entry in row] for row in unit]
-    power = linear
-    while power.rotation != unit:
-        for row, added in zip(total, power.rotation, strict=True):
-            row[:] = [a + int(b) for a, b in zip(row, added, strict=True)]
-        power = power @ linear
-    moved = [sum(a * b for a, b in zip(row, operation.translation, strict=True)) for row in total]
-    return has_integer_solution(total, [Fraction(-entry) for entry in moved])
+    total = power_sum(operation.rotation)
+    moved = apply(total, operation.translation)
+    rows = [[int(entry) for entry in row] for row in total]
+    return has_integer_solution(rows, [-Fraction(entry) for entry in moved])
 
 
 def is_enantiomorphic(group: SpaceGroup) -> bool:

@@ -16,16 +16,16 @@ from ellipsoid_planning.crystal.catalogue import (
     reference_group,
     symbol_of,
 )
-from ellipsoid_planning.crystal.flags import fixing_rows, has_torsion
-from ellipsoid_planning.crystal.integer_linear import solve_modulo_one
-from ellipsoid_planning.crystal.operation import (
+from ellipsoid_planning.crystal.exact_matrix import (
     Matrix,
-    Operation,
     apply,
     determinant,
     inverse,
     multiply,
 )
+from ellipsoid_planning.crystal.flags import fixing_rows, has_torsion
+from ellipsoid_planning.crystal.integer_linear import solve_modulo_one
+from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.plane_catalogue import PLANE_GROUPS
 from ellipsoid_planning.crystal.primitive import PrimitiveGroup, primitive
 from ellipsoid_planning.crystal.standard_axes import axis_changes, crystal_system, standard_axes

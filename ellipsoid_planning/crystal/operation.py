@@ -8,11 +8,18 @@ from fractions import Fraction
 from functools import cached_property
 from math import floor
 
+from ellipsoid_planning.crystal.exact_matrix import (
+    Matrix,
+    Number,
+    apply,
+    determinant,
+    exact_matrix,
+    inverse,
+    multiply,
+    unit_matrix,
+)
 from ellipsoid_planning.crystal.triplets import parse_triplet, print_triplet
 from ellipsoid_planning.errors import CrystalError
-
-Matrix = tuple[tuple[Fraction, ...], ...]
-Vector = tuple[Fraction, ...]
 
 
 @dataclass(frozen=True)
@@ -23,8 +30,8 @@ class Operation:
     lattice vector only.
 
     Attributes:
-        rotation: the linear part W, n rows of n fractions; a matrix in the cell's own basis, so
-            that it need not be orthogonal.
+        rotation: the linear part W, n rows of n integers (fractions where they are none); a
+            matrix in the cell's own basis, so that it need not be orthogonal.
         translation: w, n fractions, in units of the cell's vectors.
 
     Raises:
@@ -32,10 +39,10 @@ class Operation:
     """
 
     rotation: Matrix
-    translation: Vector
+    translation: tuple[Fraction, ...]
 
     def __post_init__(self) -> None:
-        rotation = tuple(tuple(Fraction(entry) for entry in row) for row in self.rotation)
+        rotation = exact_matrix(self.rotation)
         translation = tuple(Fraction(entry) for entry in self.translation)
         object.__setattr__(self, "rotation", rotation)
         object.__setattr__(self, "translation", translation)
@@ -63,9 +70,9 @@ class Operation:
         return cls(unit_matrix(dimension), (Fraction(0),) * dimension)
 
     @classmethod
-    def shift(cls, vector: Iterable[Fraction]) -> Operation:
+    def shift(cls, vector: Iterable[Number]) -> Operation:
         """The translation by a vector."""
-        translation = tuple(vector)
+        translation = tuple(Fraction(entry) for entry in vector)
         return cls(unit_matrix(len(translation)), translation)
 
     @property
@@ -74,7 +81,7 @@ class Operation:
         return len(self.translation)
 
     @cached_property
-    def determinant(self) -> Fraction:
+    def determinant(self) -> Number:
         """Of the linear part: 1 for motions, -1 for mirror images."""
         return determinant(self.rotation)
 
@@ -89,7 +96,7 @@ class Operation:
     def __matmul__(self, other: Operation) -> Operation:
         """The composition: first the other operation, then this one (thesis (3.3))."""
         moved = apply(self.rotation, other.translation)
-        shifts = tuple(a + b for a, b in zip(moved, self.translation, strict=True))
+        shifts = tuple(b + a for a, b in zip(moved, self.translation, strict=True))
         return Operation(multiply(self.rotation, other.rotation), shifts)
 
     def compose(self, other: Operation) -> Operation:
@@ -99,9 +106,10 @@ class Operation:
     def inverse(self) -> Operation:
         """The operation that undoes this one."""
         rotation = inverse(self.rotation)
-        return Operation(rotation, tuple(-entry for entry in apply(rotation, self.translation)))
+        shifts = apply(rotation, self.translation)
+        return Operation(rotation, tuple(Fraction(-entry) for entry in shifts))
 
-    def modulo(self, lattice: Sequence[Sequence[Fraction]] | None = None) -> Operation:
+    def modulo(self, lattice: Sequence[Sequence[Number]] | None = None) -> Operation:
         """The operation whose translation lies in the lattice's cell, [0, 1) along each vector.
 
         Args:
@@ -110,48 +118,8 @@ class Operation:
         """
         if lattice is None:
             return Operation(self.rotation, tuple(entry % 1 for entry in self.translation))
-        basis = tuple(tuple(Fraction(entry) for entry in row) for row in lattice)
-        steps = [Fraction(floor(entry)) for entry in apply(inverse(basis), self.translation)]
+        basis = exact_matrix(lattice)
+        steps = [floor(entry) for entry in apply(inverse(basis), self.translation)]
         whole = apply(basis, steps)
         shifts = tuple(a - b for a, b in zip(self.translation, whole, strict=True))
         return Operation(self.rotation, shifts)
-
-
-def unit_matrix(dimension: int) -> Matrix:
-    """The identity, n rows of n fractions."""
-    return tuple(tuple(Fraction(i == j) for j in range(dimension)) for i in range(dimension))
-
-
-def apply(matrix: Matrix, vector: Sequence[Fraction]) -> Vector:
-    """The product of an (n, n) matrix and a vector (n,)."""
-    pairs = (zip(row, vector, strict=True) for row in matrix)
-    return tuple(sum((a * b for a, b in pair), Fraction(0)) for pair in pairs)
-
-
-def multiply(first: Matrix, second: Matrix) -> Matrix:
-    """The product of two (n, n) matrices."""
-    columns = [apply(first, column) for column in zip(*second, strict=True)]
-    return tuple(zip(*columns, strict=True))
-
-
-def determinant(matrix: Matrix) -> Fraction:
-    """The determinant of a (2, 2) or (3, 3) matrix."""
-    if len(matrix) == 2:
-        return matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0]
-    return sum((matrix[0][i] * _cofactor(matrix, 0, i) for i in range(3)), Fraction(0))
-
-
-def inverse(matrix: Matrix) -> Matrix:
-    """The inverse of an invertible (2, 2) or (3, 3) matrix."""
-    scale = 1 / determinant(matrix)
-    if len(matrix) == 2:
-        (a, b), (c, d) = matrix
-        return ((d * scale, -b * scale), (-c * scale, a * scale))
-    return tuple(tuple(_cofactor(matrix, j, i) * scale for j in range(3)) for i in range(3))
-
-
-def _cofactor(matrix: Matrix, row: int, column: int) -> Fraction:
-    # Cyclic indices carry the sign.
-    r, s = (row + 1) % 3, (row + 2) % 3
-    c, d = (column + 1) % 3, (column + 2) % 3
-    return matrix[r][c] * matrix[s][d] - matrix[r][d] * matrix[s][c]

@@ -8,16 +8,19 @@ from fractions import Fraction
 from functools import cached_property
 from math import lcm
 
-from ellipsoid_planning.crystal.integer_linear import lattice_basis
-from ellipsoid_planning.crystal.operation import (
+from ellipsoid_planning.crystal.exact_matrix import (
     Matrix,
-    Operation,
+    Vector,
+    apply,
     determinant,
+    exact_matrix,
     inverse,
+    matrix_order,
     multiply,
     unit_matrix,
 )
-from ellipsoid_planning.crystal.operation import apply as times
+from ellipsoid_planning.crystal.integer_linear import lattice_basis
+from ellipsoid_planning.crystal.operation import Operation
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +50,7 @@ class PrimitiveGroup:
     @cached_property
     def generators(self) -> tuple[Operation, ...]:
         """A few operations, the highest orders first, whose linear parts generate all others."""
-        ranked = sorted(self.operations, key=lambda op: -rotation_order(op.rotation))
+        ranked = sorted(self.operations, key=lambda op: -matrix_order(op.rotation))
         reached = {unit_matrix(self.dimension)}
         chosen: list[Operation] = []
         for operation in ranked:
@@ -68,17 +71,8 @@ def primitive(operations: Sequence[Operation]) -> PrimitiveGroup:
     for operation in operations:
         rotation = multiply(multiply(back, operation.rotation), basis)
         if rotation not in found:
-            found[rotation] = Operation(rotation, times(back, operation.translation)).modulo()
+            found[rotation] = _operation(rotation, apply(back, operation.translation))
     return PrimitiveGroup(basis, tuple(found.values()))
-
-
-def rotation_order(rotation: Matrix) -> int:
-    """The smallest power that is the identity."""
-    unit = unit_matrix(len(rotation))
-    power, order = rotation, 1
-    while power != unit:
-        power, order = multiply(power, rotation), order + 1
-    return order
 
 
 def _primitive_basis(centrings: list[tuple[Fraction, ...]], dimension: int) -> Matrix:
@@ -91,7 +85,11 @@ def _primitive_basis(centrings: list[tuple[Fraction, ...]], dimension: int) -> M
     if determinant(tuple(rows)) < 0:
         # Handedness tells enantiomorphic types apart.
         rows[-1] = tuple(-entry for entry in rows[-1])
-    return tuple(zip(*rows, strict=True))
+    return exact_matrix(zip(*rows, strict=True))
+
+
+def _operation(rotation: Matrix, translation: Vector) -> Operation:
+    return Operation(rotation, tuple(Fraction(entry) for entry in translation)).modulo()
 
 
 def _generated(generators: list[Matrix]) -> set[Matrix]:

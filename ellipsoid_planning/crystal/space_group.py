@@ -16,6 +16,7 @@ from ellipsoid_planning.crystal.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
 
 Integers = NDArray[np.int64]
+LARGEST = 10**6  # of a matrix' entries and of denominators, so that products stay below 2^63
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
@@ -178,6 +179,8 @@ def _check_operations(name: str, operations: tuple[Operation, ...]) -> None:
             )
         first[operation] = number
         _check_lattice(name, number, operation)
+    if lcm(*(entry.denominator for op in operations for entry in op.translation)) > LARGEST**2:
+        raise CrystalError(f"{name}: the translations have no common denominator of a few digits")
     if identity not in first:
         raise CrystalError(f"{name}: the identity {identity} is missing; add it as the first")
     if first[identity] != 1:
@@ -193,6 +196,13 @@ def _check_lattice(name: str, number: int, operation: Operation) -> None:
         raise CrystalError(
             f"{name}: operation {number}, {operation}, does not map the cell's lattice to itself; "
             "expected a matrix of integers with determinant 1 or -1"
+        )
+    entries = [abs(int(entry)) for row in operation.rotation for entry in row]
+    denominators = [entry.denominator for entry in operation.translation]
+    if max(entries) > LARGEST or lcm(*denominators) > LARGEST:
+        raise CrystalError(
+            f"{name}: operation {number}, {operation}: expected numbers with a few digits only; "
+            "write fractions such as 1/3 as such"
         )
 
 

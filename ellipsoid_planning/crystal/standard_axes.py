@@ -12,16 +12,19 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 
-from ellipsoid_planning.crystal.integer_linear import integer_kernel
-from ellipsoid_planning.crystal.operation import (
+from ellipsoid_planning.crystal.exact_matrix import (
     Matrix,
+    Number,
     Vector,
     apply,
     determinant,
+    dot,
+    matrix_order,
     multiply,
+    power_sum,
     unit_matrix,
 )
-from ellipsoid_planning.crystal.primitive import rotation_order
+from ellipsoid_planning.crystal.integer_linear import integer_kernel
 
 System = str
 # Generators of the rotations that may still change the axes, as rows.
@@ -40,11 +43,11 @@ CHANGES: dict[tuple[int, System], tuple[tuple[tuple[int, ...], ...], ...]] = {
 
 def crystal_system(rotations: Sequence[Matrix]) -> System:
     """The system of the axes: trigonal groups count as hexagonal."""
-    orders = [rotation_order(proper(rotation)) for rotation in rotations]
+    orders = [matrix_order(proper(rotation)) for rotation in rotations]
     flat = len(rotations[0]) == 2
     if 3 in orders:
         turns = {proper(rotation) for rotation in rotations}
-        cubic = sum(rotation_order(turn) == 3 for turn in turns) > 2
+        cubic = sum(matrix_order(turn) == 3 for turn in turns) > 2
         return "cubic" if cubic else "hexagonal"
     if 4 in orders:
         return "square" if flat else "tetragonal"
@@ -71,7 +74,7 @@ def axis_changes(dimension: int, system: System) -> tuple[Matrix, ...]:
     """The changes of axes, in units of these, that standard axes leave open."""
     if system == "monoclinic":
         return _monoclinic_changes()
-    generators = [_fractions(rows) for rows in CHANGES[dimension, system]]
+    generators = [_tuples(rows) for rows in CHANGES[dimension, system]]
     found = [unit_matrix(dimension)]
     for known in found:
         for generator in generators:
@@ -97,20 +100,20 @@ def _columns(system: System, rotations: Sequence[Matrix]) -> list[Vector]:
         mirror = next(turn for turn in turns if determinant(turn) < 0)
         return [_axis(mirror), _plane(mirror)[0]]
     if system == "monoclinic":
-        turn = next(turn for turn in turns if rotation_order(turn) == 2)
+        turn = next(turn for turn in turns if matrix_order(turn) == 2)
         first, second = _reduced(_plane(turn), rotations)
         return [first, _axis(turn), second]
     if system in ("orthorhombic", "cubic"):
         return _three_axes(turns)
     order = 3 if system == "hexagonal" else 4
-    turn = next(turn for turn in turns if rotation_order(turn) == order and determinant(turn) == 1)
+    turn = next(turn for turn in turns if matrix_order(turn) == order and determinant(turn) == 1)
     shortest = _reduced(_plane(turn), rotations)[0]
     plane = [shortest, apply(turn, shortest)]
     return plane if dimension == 2 else [*plane, _axis(turn)]
 
 
 def _three_axes(turns: Sequence[Matrix]) -> list[Vector]:
-    orders = [rotation_order(turn) for turn in turns]
+    orders = [matrix_order(turn) for turn in turns]
     order = 4 if 4 in orders else 2
     along = {_axis(turn) for turn, its in zip(turns, orders, strict=True) if its == order}
     return sorted(along, reverse=True)
@@ -120,22 +123,13 @@ def _axis(turn: Matrix) -> Vector:
     """The shortest lattice vector along the axis, its first entry other than zero positive."""
     (vector,) = integer_kernel(_plus(turn, -1))
     leading = next(entry for entry in vector if entry)
-    return tuple(Fraction(entry if leading > 0 else -entry) for entry in vector)
+    return tuple(entry if leading > 0 else -entry for entry in vector)
 
 
 def _plane(turn: Matrix) -> list[Vector]:
     """A basis of the lattice vectors that the sum of the rotation's powers annihilates."""
-    order = rotation_order(turn)
-    total = unit_matrix(len(turn))
-    power = total
-    for _ in range(order - 1):
-        power = multiply(power, turn)
-        total = tuple(
-            tuple(a + b for a, b in zip(row, other, strict=True))
-            for row, other in zip(total, power, strict=True)
-        )
-    rows = [[int(entry) for entry in row] for row in total]
-    return [tuple(map(Fraction, vector)) for vector in integer_kernel(rows)]
+    rows = [[int(entry) for entry in row] for row in power_sum(turn)]
+    return [tuple(vector) for vector in integer_kernel(rows)]
 
 
 def _reduced(pair: list[Vector], rotations: Sequence[Matrix]) -> tuple[Vector, Vector]:
@@ -144,19 +138,16 @@ def _reduced(pair: list[Vector], rotations: Sequence[Matrix]) -> tuple[Vector, V
     while True:
         if _product(first, first, rotations) > _product(second, second, rotations):
             first, second = second, first
-        steps = round(_product(first, second, rotations) / _product(first, first, rotations))
+        length = Fraction(_product(first, first, rotations))
+        steps = round(_product(first, second, rotations) / length)
         if not steps:
             return first, second
         second = tuple(b - steps * a for a, b in zip(first, second, strict=True))
 
 
-def _product(first: Vector, second: Vector, rotations: Sequence[Matrix]) -> Fraction:
+def _product(first: Vector, second: Vector, rotations: Sequence[Matrix]) -> Number:
     """The scalar product, averaged over the group; up to a factor."""
-    total = Fraction(0)
-    for rotation in rotations:
-        pairs = zip(apply(rotation, first), apply(rotation, second), strict=True)
-        total += sum((a * b for a, b in pairs), Fraction(0))
-    return total
+    return sum(dot(apply(turn, first), apply(turn, second)) for turn in rotations)
 
 
 def _plus(turn: Matrix, factor: int) -> list[list[int]]:
@@ -172,9 +163,9 @@ def _monoclinic_changes() -> tuple[Matrix, ...]:
     for a, b, c, d in product((0, 1, -1), repeat=4):
         if a * d - b * c == 1:
             rows = ((a, 0, b), (0, 1, 0), (c, 0, d))
-            found.setdefault((a % 2, b % 2, c % 2, d % 2), _fractions(rows))
+            found.setdefault((a % 2, b % 2, c % 2, d % 2), _tuples(rows))
     return tuple(found.values())
 
 
-def _fractions(rows: Sequence[Sequence[int]]) -> Matrix:
-    return tuple(tuple(Fraction(entry) for entry in row) for row in rows)
+def _tuples(rows: Sequence[Sequence[int]]) -> Matrix:
+    return tuple(tuple(row) for row in rows)

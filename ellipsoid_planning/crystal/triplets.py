@@ -6,11 +6,14 @@ The grammar takes coefficients, fractions, decimals and parentheses: ``(-2x+1/4+
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 
+from ellipsoid_planning.crystal.exact_matrix import Number
 from ellipsoid_planning.errors import CrystalError
 
 VARIABLES = "xyz"
+LONGEST = 200  # letters of an operation; none that is meant is as long
 TOKEN = re.compile(r"\s*(?:(\d+\.\d*|\.\d+|\d+)|([A-Za-z])|(.))")
 
 Row = tuple[Fraction, ...]  # the coefficients of x, y (, z), then the constant
@@ -22,21 +25,25 @@ def parse_triplet(text: str) -> list[Row]:
     Raises:
         CrystalError: the text is no triplet (in 2-D: no pair); says where and what was expected.
     """
+    text = text.strip().replace("\N{MINUS SIGN}", "-")
+    if len(text) > LONGEST:
+        raise CrystalError(
+            f"{text[:20]!r}...: expected coordinates such as x,y,z, got {len(text)} letters"
+        )
     parts = _split(text)
     if len(parts) not in (2, 3):
         raise CrystalError(
-            f"{text.strip()!r}: expected three coordinates such as x,y,z (in the plane two: x,y), "
+            f"{text!r}: expected three coordinates such as x,y,z (in the plane two: x,y), "
             f"got {len(parts)}"
         )
-    return [_Expression(part, len(parts), text.strip()).row() for part in parts]
+    return [_Expression(part, len(parts), text).row() for part in parts]
 
 
 def _split(text: str) -> list[str]:
     """The coordinates, without parentheses around them all."""
-    inner = text.strip()
-    if inner.startswith("(") and _closing(inner) == len(inner) - 1 and "," in inner:
-        inner = inner[1:-1]
-    return inner.split(",")
+    if text.startswith("(") and _closing(text) == len(text) - 1 and "," in text:
+        text = text[1:-1]
+    return text.split(",")
 
 
 def _closing(text: str) -> int:
@@ -134,12 +141,12 @@ class _Expression:
         )
 
 
-def print_triplet(rows: list[Row]) -> str:
+def print_triplet(rows: Sequence[Sequence[Number]]) -> str:
     """The operation's shortest text: ``-x+1/2,-y,z+1/2``."""
     return ",".join(_print_row(row) for row in rows)
 
 
-def _print_row(row: Row) -> str:
+def _print_row(row: Sequence[Number]) -> str:
     terms = [
         _sign(entry)
         + ("" if abs(entry) == 1 else str(abs(entry)) + "*" * (entry.denominator > 1))
@@ -152,5 +159,5 @@ def _print_row(row: Row) -> str:
     return "".join(terms).removeprefix("+")
 
 
-def _sign(entry: Fraction) -> str:
+def _sign(entry: Number) -> str:
     return "-" if entry < 0 else "+"

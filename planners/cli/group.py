@@ -19,7 +19,7 @@ YES, NO = 0, 1
 Name = Annotated[
     str | None,
     typer.Argument(
-        metavar="[NAME]",
+        metavar="NAME",
         help="Symbol or number of a space group, such as P212121 or 19, or a plane group's symbol "
         "in small letters, such as p4.",
         show_default=False,

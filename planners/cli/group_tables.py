@@ -77,7 +77,7 @@ def cosets(report: Report) -> list[Table]:
     made.add_column("coset", justify="right", style="dim")
     made.add_column("left")
     made.add_column("right")
-    made.add_column("the left one is right coset")
+    made.add_column("left is right no.")
     rows = zip(report["left"], report["right"], report["matches"], strict=True)
     for place, (left, right, match) in enumerate(rows, start=1):
         numbers = (_list(left["numbers"]), _list(right["numbers"]))

@@ -130,7 +130,7 @@ class GridSearch:
                 counts,
                 self.own,
                 self.model.crystal,
-                self.model.required,
+                self.model.required - self.model.slack,
                 found,
             )
             yield found[:written] + first * self.model.grid.joint_count

@@ -33,6 +33,10 @@ class PackingModel:
         molecule: the molecule, with its K coordinates.
         grid: the arrangements that are searched; its ranges bound the coordinates.
         resolution: the smallest spacing d_min of the lattice planes that are compared.
+        overlap: how deep [length] parts may reach into each other in a free arrangement; 0 for
+            hard bodies. Ellipsoids that stand for soft ones, as a protein's domains, need some.
+        slack: how much deeper at the nodes of the grid, which are not the arrangements looked
+            for but near them; they are candidates, and what is refined from them is free.
         origin: the file it was read from, for messages and for its fingerprint.
 
     Raises:
@@ -46,6 +50,8 @@ class PackingModel:
     grid: ArrangementGrid
     resolution: float
     description: str = ""
+    overlap: float = 0.0
+    slack: float = 0.0
     document: Mapping[str, Any] = field(default_factory=dict, repr=False)
     origin: Origin = field(default_factory=Origin, repr=False)
 
@@ -94,16 +100,16 @@ class PackingModel:
 
     @cached_property
     def required(self) -> float:
-        """The gap [length] that counts as proved apart: what rounding could have made of none."""
+        """The gap [length] from which on bodies count as free: rounding, less the overlap."""
         size = float(np.linalg.norm(self.crystal[1], axis=0).max())
         size += sum(float(part.semi_axes.max()) for part in self.parts)
-        return layout.ROUNDING * 4.0 * size
+        return layout.ROUNDING * 4.0 * size - self.overlap
 
     def is_free(self, configuration: ArrayLike) -> bool:
         """Whether no two copies of the molecule, nor parts that should not, meet.
 
-        True is proved (a separating direction for each pair that could touch); a touch closer
-        than ``required`` counts as a collision.
+        True is proved (a direction for each pair that could touch); what rounding might have
+        decided counts as a collision.
 
         Args:
             configuration: (K,), angles [rad].

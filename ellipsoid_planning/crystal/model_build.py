@@ -98,6 +98,8 @@ class _Builder:
             SearchGrid(block.search, molecule, cell, self._origin).grid(),
             float(block.diffraction.resolution),
             block.description,
+            float(block.packing.overlap),
+            float(block.search.slack),
             document,
             self._origin,
         )

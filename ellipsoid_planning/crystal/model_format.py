@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, StrictStr
 
-from ellipsoid_planning.scenario_blocks import Block, Name, Number, Positive
+from ellipsoid_planning.scenario_blocks import Block, Name, NotNegative, Number, Positive
 from ellipsoid_planning.scenario_format import whole
 from ellipsoid_planning.scenario_format_robot import RobotBlock
 
@@ -54,9 +54,20 @@ class PositionBlock(Block):
     z: RangeBlock | None = None
 
 
+class PackingBlock(Block):
+    """What counts as a packing."""
+
+    overlap: NotNegative = Field(
+        0.0, description="how deep parts may reach into each other in a free arrangement"
+    )
+
+
 class SearchBlock(Block):
     """The grid of arrangements; what is not named does not move (joints: stand at zero)."""
 
+    slack: NotNegative = Field(
+        0.0, description="how much deeper at the grid's nodes, which only lie near free ones"
+    )
     position: PositionBlock = PositionBlock()
     orientation: OrientationBlock | None = None
     joints: dict[StrictStr, RangeBlock] = Field(
@@ -87,6 +98,7 @@ class PackingModelBlock(Block):
     group: StrictStr | int
     cell: CellBlock
     molecule: RobotBlock
+    packing: PackingBlock = PackingBlock()
     search: SearchBlock
     diffraction: DiffractionBlock
 

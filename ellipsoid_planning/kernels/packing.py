@@ -27,7 +27,7 @@ from .layout import (
     ROUNDING,
 )
 from .molecule import FRAME, place_frames
-from .separation import DECIDE, separation
+from .separation import CONVERGE, DECIDE, separation
 
 INSCRIBED = BODY_RADIUS + 1
 OPERATION = 12
@@ -35,18 +35,24 @@ OPERATION = 12
 
 @kernel
 def apart(bodies, i, copy, j, required):
-    """Whether body i and body ``copy[0]`` (of the shape of j) are proved ``required`` apart."""
+    """Whether body i and body ``copy[0]`` (of the shape of j) are proved ``required`` apart.
+
+    With a negative ``required`` they may overlap by that depth: some direction is proved in which
+    they need not be moved farther than that to come apart.
+    """
     x = copy[0, PLACED_CENTRE] - bodies[i, BODY_CENTRE]
     y = copy[0, PLACED_CENTRE + 1] - bodies[i, BODY_CENTRE + 1]
     z = copy[0, PLACED_CENTRE + 2] - bodies[i, BODY_CENTRE + 2]
     distance = math.sqrt(x * x + y * y + z * z)
-    if distance <= bodies[i, INSCRIBED] + bodies[j, INSCRIBED]:
+    if distance <= bodies[i, INSCRIBED] + bodies[j, INSCRIBED] + required:
         return False
     reach = bodies[i, BODY_RADIUS] + bodies[j, BODY_RADIUS] + required
     if distance > reach * (1.0 + ROUNDING):
         return True
     lam = bodies[i, BODY_RADIUS] / (bodies[i, BODY_RADIUS] + bodies[j, BODY_RADIUS])
-    value, _, _, _, _ = separation(bodies, i, copy, 0, lam, required, DECIDE)
+    # Where they may overlap by so much, the best direction counts even though they meet.
+    mode = DECIDE if required >= 0.0 else CONVERGE
+    value, _, _, _, _ = separation(bodies, i, copy, 0, lam, required, mode)
     return value > required
 
 
@@ -81,7 +87,7 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
         basis: (3, 3), B.
         inverse: (3, 3), its inverse.
         reaches: (3,), the lengths of the rows of ``inverse``.
-        required: the distance to be proved, at least what rounding needs.
+        required: the distance to be proved, see `apart`.
         copy: (1, PLACED), scratch.
     """
     reach = bodies[i, BODY_RADIUS] + bodies[j, BODY_RADIUS] + required

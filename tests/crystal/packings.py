@@ -32,23 +32,25 @@ def model_from(text: str) -> PackingModel:
     return model_of(*parse_document(text, "model.yaml"))
 
 
-def one_body(
+def one_body(*arguments: Any, **named: Any) -> PackingModel:
+    return model_from(one_body_text(*arguments, **named))
+
+
+def one_body_text(
     group: str,
     cell: str,
     semi_axes: list[float],
     search: str = "{}",
     position: list[float] | None = None,
-) -> PackingModel:
+) -> str:
     at = position or [0.0] * len(semi_axes)
-    return model_from(
-        ONE_BODY.format(
-            dimension=len(semi_axes),
-            group=group,
-            cell=cell,
-            semi_axes=semi_axes,
-            search=search,
-            position=at,
-        )
+    return ONE_BODY.format(
+        dimension=len(semi_axes),
+        group=group,
+        cell=cell,
+        semi_axes=semi_axes,
+        search=search,
+        position=at,
     )
 
 
@@ -89,4 +91,4 @@ def watched(model: PackingModel, first: str, second: str) -> bool:
     return all({joint.parent, joint.child} != {first, second} for joint in robot.joints)
 
 
-__all__ = ["model_from", "one_body", "smallest_gap", "watched"]
+__all__ = ["model_from", "one_body", "one_body_text", "smallest_gap", "watched"]

@@ -6,7 +6,7 @@ import pytest
 
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.model import load_model, load_target
-from tests.crystal.packings import model_from, one_body, smallest_gap
+from tests.crystal.packings import model_from, one_body, one_body_text, smallest_gap
 
 HAIR = 1e-9
 
@@ -112,6 +112,40 @@ def test_turned_ellipsoids_that_miss_or_touch_by_a_hair(hair):
         cell = f"{{lengths: [{touching + hair!r}, 60, 60]}}"
         model = one_body("P1", cell, [3.0, 1.0, 0.7], search)
         assert model.is_free(q) == (hair > 0)
+
+
+@pytest.mark.parametrize("hair", [HAIR, -HAIR])
+@pytest.mark.parametrize(("axes", "depth"), [([1.0, 1.0, 1.0], 0.3), ([1.0, 0.4, 0.2], 0.1)])
+def test_soft_bodies_may_overlap_to_a_hair(axes, depth, hair):
+    text = one_body_text("P1", f"{{lengths: [{2.0 - depth + hair!r}, 9, 9]}}", axes)
+    assert not model_from(text).is_free([])
+    soft = text.replace("search:", f"packing: {{overlap: {depth}}}\nsearch:")
+    assert model_from(soft).is_free([]) == (hair > 0)
+
+
+def test_soft_bodies_agree_with_the_slow_twin():
+    text = CHAIN.format(group="P21", cell="{lengths: [6, 5, 5], angles_deg: [90, 105, 90]}", step=2)
+    model = model_from(text.replace("search:", "packing: {overlap: 0.15}\nsearch:", 1))
+    arrangements = draws(model, 60, 21)
+    gaps = np.array([smallest_gap(model, q, reach=3) for q in arrangements])
+    free = model.are_free(arrangements)
+    # The twin's depth is that of a locally best direction: where it says free, so must we.
+    assert np.all(free[gaps > -0.15])
+    assert free.sum() > np.sum(gaps > 0)
+    hard = model_from(text)
+    assert not np.any(hard.are_free(arrangements) & ~free)
+
+
+def test_slack_is_for_the_nodes_of_the_grid_alone():
+    text = CHAIN.format(
+        group="P1", cell="{lengths: [4, 4.5, 5], angles_deg: [75, 100, 62]}", step=1
+    )
+    strict, slack = model_from(text), model_from(text.replace("search:", "search:\n  slack: 0.1"))
+    poses = strict.grid.base_poses
+    few, more = (set(GridSearch(m).free(0, poses).tolist()) for m in (strict, slack))
+    assert few < more
+    extra = slack.grid.configurations(sorted(more - few))
+    assert not slack.are_free(extra).any()
 
 
 def test_copies_many_cells_away_are_found():

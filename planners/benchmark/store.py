@@ -3,33 +3,28 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 from ellipsoid_planning import atomic
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from ellipsoid_planning.run_folder import RunFolder
 from planners.benchmark.campaign import Campaign, differences
 from planners.benchmark.run import RunRecord, RunTask
 
-CAMPAIGN = "campaign.json"
 RUNS = "runs"
 RECORD = "record.json"
 RESULT = "RESULT.json"
 LOG = "ompl.log"
 
 
-class Store:
+class Store(RunFolder):
     """Finished runs, one folder each: ``runs/PROBLEM/CONTENDER/NUMBER/``.
 
     It holds ``RESULT.json`` with the path, ``ompl.log``, and ``record.json``, which is written
     last: a run is finished when its record is there.
     """
 
-    def __init__(self, folder: Path) -> None:
-        """A store in ``folder``; nothing is touched yet."""
-        self.folder = folder
+    manifest = "campaign.json"
+    what = "campaign"
 
     def check(self, campaign: Campaign) -> None:
         """Check that the folder can take this campaign, or holds a part of it, writing nothing.
@@ -38,50 +33,7 @@ class Store:
             EllipsoidPlanningError: it cannot be written to, holds something else, or a campaign
                 of other settings; the message names them.
         """
-        where = f"--output {self.folder}"
-        if not self.folder.exists():
-            parent = self.folder.resolve().parent
-            if not parent.is_dir():
-                raise EllipsoidPlanningError(
-                    f"{where}: the folder {str(parent)!r} does not exist; create it first"
-                )
-            self._check_access(parent)
-            return
-        if not self.folder.is_dir():
-            raise EllipsoidPlanningError(f"{where}: expected a folder, this is a file")
-        self._check_access(self.folder)
-        if not any(self.folder.iterdir()):
-            return
-        if not (self.folder / CAMPAIGN).is_file():
-            raise EllipsoidPlanningError(
-                f"{where}: the folder holds other files; name a new or empty folder"
-            )
-        self._check_settings(campaign)
-
-    def _check_access(self, folder: Path) -> None:
-        if not os.access(folder, os.W_OK | os.X_OK):
-            raise EllipsoidPlanningError(
-                f"--output {self.folder}: the folder {str(folder)!r} cannot be written to"
-            )
-
-    def _check_settings(self, campaign: Campaign) -> None:
-        different = differences(campaign.settings(), self._settings())
-        if different:
-            raise EllipsoidPlanningError(
-                f"--output {self.folder}: it holds a campaign of other settings "
-                f"({', '.join(different)}); give the same ones to go on with it, "
-                "or name a new folder"
-            )
-
-    def _settings(self) -> Mapping[str, Any]:
-        file = self.folder / CAMPAIGN
-        try:
-            settings = json.loads(file.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            settings = None
-        if not isinstance(settings, dict):
-            raise EllipsoidPlanningError(f"{file}: it cannot be read; name a new folder")
-        return settings
+        self.check_settings(campaign.settings(), differences)
 
     def open(self, campaign: Campaign) -> None:
         """Create what is not there yet.
@@ -89,14 +41,7 @@ class Store:
         Raises:
             EllipsoidPlanningError: it cannot be created.
         """
-        try:
-            (self.folder / RUNS).mkdir(parents=True, exist_ok=True)
-            text = json.dumps(campaign.settings(), indent=1) + "\n"
-            atomic.write_text(self.folder / CAMPAIGN, text)
-        except OSError as error:
-            raise EllipsoidPlanningError(
-                f"--output {self.folder}: cannot write there: {error.strerror}"
-            ) from None
+        self.write_settings(campaign.settings())
 
     def keep(self, record: RunRecord) -> None:
         """Write a finished run.

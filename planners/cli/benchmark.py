@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from planners.cli.interrupt import INTERRUPTED
+from planners.cli.interrupt import INTERRUPTED, note_interrupts
 from planners.cli.terminal import say, working, working_with_kernels
 
 if TYPE_CHECKING:
@@ -110,7 +108,7 @@ def benchmark(
     with executor(cluster, jobs) as execute:
         for note in line.notes:
             say(f"Note: {note}")
-        interrupted = _note_interrupts()
+        interrupted = note_interrupts()
         store.open(campaign)
         records = run_campaign(campaign, store, execute, interrupted)
     if records:
@@ -172,10 +170,3 @@ def _named_problems(names: list[str], contenders: tuple[Contender, ...]) -> tupl
             for scenario in loaded:
                 check_scenario(scenario, contenders)
     return scenario_problems(loaded)
-
-
-def _note_interrupts() -> threading.Event:
-    """Let Ctrl-C from now on only be noted; what is running is ended, what is finished written."""
-    interrupted = threading.Event()
-    signal.signal(signal.SIGINT, lambda *_: interrupted.set())
-    return interrupted

@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from ellipsoid_planning.errors import PlannerError
+from planners.cli.progress import bar
 from planners.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -79,28 +80,8 @@ def _progress(total: int, done: int, runs: int) -> Iterator[_Progress]:
     if not sys.stderr.isatty():
         yield _Lines(total, done)
         return
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    columns = (
-        BarColumn(bar_width=24),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        TextColumn("{task.description}", markup=False),
-    )
-    # The runs differ by orders of magnitude: all that have ended count for the time left.
-    with Progress(*columns, console=Console(stderr=True), speed_estimate_period=1e9) as bar:
-        row = bar.add_task("", total=total, completed=done)
-        yield _Bar(lambda text, ended: bar.update(row, description=text, advance=ended), runs)
+    with bar(total, done) as update:
+        yield _Bar(update, runs)
 
 
 class _Bar:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from pathlib import Path
 
 from ellipsoid_planning.atomic import partial_path
@@ -24,6 +25,23 @@ def end_on_interrupt() -> None:
     KeyboardInterrupt once it has returned.
     """
     signal.signal(signal.SIGINT, _end)
+
+
+def note_interrupts(*, twice_ends: bool = False) -> threading.Event:
+    """Let Ctrl-C from now on only be noted; what is running is ended, what is finished written.
+
+    Args:
+        twice_ends: whether a second one ends the process at once, as without this.
+    """
+    interrupted = threading.Event()
+
+    def note(*_: object) -> None:
+        if twice_ends and interrupted.is_set():
+            _end()
+        interrupted.set()
+
+    signal.signal(signal.SIGINT, note)
+    return interrupted
 
 
 def clean_up(outputs: list[Path]) -> None:

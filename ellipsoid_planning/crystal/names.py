@@ -77,6 +77,8 @@ def setting_name(operations: Sequence[Operation]) -> str | None:
     if operations[0].dimension == 2:
         return None
     library = gemmi()
+    if any(library.Op.DEN % t.denominator for op in operations for t in op.translation):
+        return None
     ops = [library.Op(operation.triplet()) for operation in operations]
     found = library.find_spacegroup_by_ops(library.GroupOps(ops))
     return symbol_of(found) if found is not None else None

@@ -93,6 +93,8 @@ class _Expression:
         while (symbol := self._next()) and symbol not in "+-)":
             if symbol in "*/":
                 self.place += 1
+            elif _is_number(symbol):
+                raise self._error(f"unexpected {symbol!r}")
             factor = self._factor()
             product = (
                 self._divided(product, factor) if symbol == "/" else self._times(product, factor)
@@ -111,7 +113,7 @@ class _Expression:
         row = [Fraction(0)] * (self.dimension + 1)
         if symbol and symbol.lower() in VARIABLES[: self.dimension]:
             row[VARIABLES.index(symbol.lower())] = Fraction(1)
-        elif symbol and (symbol[0].isdigit() or symbol[0] == ".") and symbol != ".":
+        elif _is_number(symbol):
             row[-1] = Fraction(symbol)
         else:
             self.place -= 1
@@ -139,6 +141,10 @@ class _Expression:
             f"{self.whole!r}: {problem}; expected coordinates such as -x+1/2 of {letters}, "
             "fractions and numbers"
         )
+
+
+def _is_number(symbol: str) -> bool:
+    return any(letter.isdecimal() for letter in symbol)
 
 
 def print_triplet(rows: Sequence[Sequence[Number]]) -> str:

@@ -149,7 +149,7 @@ def _unit_vectors(alpha: float, beta: float, gamma: float) -> NDArray[np.float64
     sin_gamma = _sine(gamma)
     c_y = (cos_alpha - cos_beta * cos_gamma) / sin_gamma
     height = 1.0 - cos_beta**2 - c_y**2
-    if height <= FLATNESS**2:
+    if height <= FLATNESS:
         raise CrystalError(
             f"unit cell: alpha = {alpha:g}, beta = {beta:g}, gamma = {gamma:g} degrees make no "
             "cell; each must be less than the sum of the others, and all less than 360 together"

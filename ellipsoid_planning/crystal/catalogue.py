@@ -16,6 +16,8 @@ from ellipsoid_planning.errors import CrystalError
 TYPES = 230
 PREFERENCE = "2H"  # the second origin, at an inversion centre, and hexagonal axes
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆", "0123456", "_{}$")
+NUMBER = re.compile("[+-]?[0-9]{1,9}")
+LONGEST = 40  # letters of a symbol that messages repeat
 OVERBAR = re.compile("(.)[\u0304\u0305]")
 
 
@@ -32,8 +34,8 @@ def space_group(name: str | int) -> SpaceGroup:
         CrystalError: there is no such group; suggests some. Or gemmi is missing.
     """
     symbol = _tidy(str(name))
-    if not symbol.lstrip("+-").isdigit():
-        return _plane(symbol) or _by_symbol(symbol, str(name))
+    if not NUMBER.fullmatch(symbol):
+        return _plane(symbol) or _by_symbol(symbol, str(name)[:LONGEST])
     number = int(symbol)
     if not 1 <= number <= TYPES:
         raise CrystalError(

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ellipsoid_planning.crystal.exact_matrix import apply, power_sum, unit_matrix
+from ellipsoid_planning.crystal.exact_matrix import Number, apply, power_sum, unit_matrix
 from ellipsoid_planning.crystal.integer_linear import has_integer_solution, solve_modulo_one
 from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.primitive import primitive
@@ -36,7 +35,7 @@ def is_symmorphic(group: SpaceGroup) -> bool:
     """
     reduced = primitive(group.operations)
     matrix: list[list[int]] = []
-    values: list[Fraction] = []
+    values: list[Number] = []
     for operation in reduced.generators:
         matrix += fixing_rows(operation)
         values += operation.translation
@@ -66,7 +65,7 @@ def has_torsion(operation: Operation) -> bool:
     total = power_sum(operation.rotation)
     moved = apply(total, operation.translation)
     rows = [[int(entry) for entry in row] for row in total]
-    return has_integer_solution(rows, [-Fraction(entry) for entry in moved])
+    return has_integer_solution(rows, [-entry for entry in moved])
 
 
 def is_enantiomorphic(group: SpaceGroup) -> bool:

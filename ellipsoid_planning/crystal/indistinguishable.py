@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
+from ellipsoid_planning.crystal.exact_matrix import Vector, apply, unit_matrix
 from ellipsoid_planning.crystal.integer_linear import smith_form, solve_modulo_one
-from ellipsoid_planning.crystal.operation import Operation, Vector, apply, unit_matrix
+from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.primitive import PrimitiveGroup, primitive
 from ellipsoid_planning.crystal.space_group import SpaceGroup
 

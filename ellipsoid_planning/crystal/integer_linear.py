@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ellipsoid_planning.crystal.exact_matrix import dot
+
 Rows = list[list[int]]
 
 
@@ -50,7 +52,7 @@ def smith_form(matrix: Sequence[Sequence[int]]) -> SmithForm:
 
 
 def solve_modulo_one(
-    matrix: Sequence[Sequence[int]], values: Sequence[Fraction]
+    matrix: Sequence[Sequence[int]], values: Sequence[int | Fraction]
 ) -> list[Fraction] | None:
     """A rational s (c,) with A s = b modulo 1, for A (r, c) and b (r,); None: there is none."""
     form = smith_form(matrix)
@@ -61,7 +63,7 @@ def solve_modulo_one(
     return _times(form.right, [*scaled, *[Fraction(0)] * (len(form.right) - len(scaled))])
 
 
-def has_integer_solution(matrix: Sequence[Sequence[int]], values: Sequence[Fraction]) -> bool:
+def has_integer_solution(matrix: Sequence[Sequence[int]], values: Sequence[int | Fraction]) -> bool:
     """Whether A k = b has a solution k of integers, for A (r, c) and b (r,)."""
     form = smith_form(matrix)
     target = _times(form.left, values)
@@ -96,9 +98,8 @@ def _unit(size: int) -> Rows:
     return [[int(i == j) for j in range(size)] for i in range(size)]
 
 
-def _times(matrix: Sequence[Sequence[int]], values: Sequence[Fraction]) -> list[Fraction]:
-    pairs = (zip(row, values, strict=True) for row in matrix)
-    return [sum((a * b for a, b in pair), Fraction(0)) for pair in pairs]
+def _times(matrix: Sequence[Sequence[int]], values: Sequence[int | Fraction]) -> list[Fraction]:
+    return [Fraction(dot(row, values)) for row in matrix]
 
 
 def _subtract(row: list[int], other: list[int], factor: int) -> None:

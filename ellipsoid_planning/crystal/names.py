@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from fractions import Fraction
 from functools import lru_cache
 from math import gcd
 from typing import Any
@@ -18,6 +17,7 @@ from ellipsoid_planning.crystal.catalogue import (
 )
 from ellipsoid_planning.crystal.exact_matrix import (
     Matrix,
+    Number,
     apply,
     determinant,
     inverse,
@@ -106,7 +106,7 @@ def _matches(group: PrimitiveGroup, model: PrimitiveGroup, change: Matrix) -> bo
         return False
     back = inverse(change)
     rows: list[list[int]] = []
-    values: list[Fraction] = []
+    values: list[Number] = []
     for generator in model.generators:
         rotation = multiply(multiply(change, generator.rotation), back)
         image = group.by_rotation.get(rotation)

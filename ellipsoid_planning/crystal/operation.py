@@ -11,6 +11,7 @@ from math import floor
 from ellipsoid_planning.crystal.exact_matrix import (
     Matrix,
     Number,
+    Vector,
     apply,
     determinant,
     exact_matrix,
@@ -39,7 +40,7 @@ class Operation:
     """
 
     rotation: Matrix
-    translation: tuple[Fraction, ...]
+    translation: Vector
 
     def __post_init__(self) -> None:
         rotation = exact_matrix(self.rotation)
@@ -72,7 +73,7 @@ class Operation:
     @classmethod
     def shift(cls, vector: Iterable[Number]) -> Operation:
         """The translation by a vector."""
-        translation = tuple(Fraction(entry) for entry in vector)
+        translation = tuple(vector)
         return cls(unit_matrix(len(translation)), translation)
 
     @property
@@ -107,7 +108,7 @@ class Operation:
         """The operation that undoes this one."""
         rotation = inverse(self.rotation)
         shifts = apply(rotation, self.translation)
-        return Operation(rotation, tuple(Fraction(-entry) for entry in shifts))
+        return Operation(rotation, tuple(-entry for entry in shifts))
 
     def modulo(self, lattice: Sequence[Sequence[Number]] | None = None) -> Operation:
         """The operation whose translation lies in the lattice's cell, [0, 1) along each vector.

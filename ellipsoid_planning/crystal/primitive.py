@@ -71,11 +71,11 @@ def primitive(operations: Sequence[Operation]) -> PrimitiveGroup:
     for operation in operations:
         rotation = multiply(multiply(back, operation.rotation), basis)
         if rotation not in found:
-            found[rotation] = _operation(rotation, apply(back, operation.translation))
+            found[rotation] = Operation(rotation, apply(back, operation.translation)).modulo()
     return PrimitiveGroup(basis, tuple(found.values()))
 
 
-def _primitive_basis(centrings: list[tuple[Fraction, ...]], dimension: int) -> Matrix:
+def _primitive_basis(centrings: list[Vector], dimension: int) -> Matrix:
     if len(centrings) == 1:
         return unit_matrix(dimension)
     size = lcm(*(entry.denominator for vector in centrings for entry in vector))
@@ -86,10 +86,6 @@ def _primitive_basis(centrings: list[tuple[Fraction, ...]], dimension: int) -> M
         # Handedness tells enantiomorphic types apart.
         rows[-1] = tuple(-entry for entry in rows[-1])
     return exact_matrix(zip(*rows, strict=True))
-
-
-def _operation(rotation: Matrix, translation: Vector) -> Operation:
-    return Operation(rotation, tuple(Fraction(entry) for entry in translation)).modulo()
 
 
 def _generated(generators: list[Matrix]) -> set[Matrix]:

@@ -1,0 +1,297 @@
+"""Measured magnitudes: reading them for a model, and writing them."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ellipsoid_planning.atomic import write_bytes
+from ellipsoid_planning.crystal.catalogue import gemmi
+from ellipsoid_planning.crystal.magnitudes import Magnitudes
+from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.crystal.operation import Operation
+from ellipsoid_planning.crystal.reflection_table import (
+    INTENSITY,
+    MAGNITUDE,
+    UNCERTAINTY,
+    ReflectionTable,
+    read_table,
+)
+from ellipsoid_planning.crystal.reflections import Reflections, absent, representatives
+from ellipsoid_planning.crystal.structure_factors import reflections_of
+from ellipsoid_planning.crystal.unit_cell import ANGLES
+from ellipsoid_planning.errors import CrystalError, ScenarioError
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+# Measured ones first, calculated ones last; compared without case, hyphens and underscores.
+PREFERRED = (
+    "FP",
+    "F",
+    "FOBS",
+    "FO",
+    "FMEASAU",
+    "FMEAS",
+    "I",
+    "IMEAN",
+    "IOBS",
+    "INTENSITYMEAS",
+    "FSQUAREDMEAS",
+    "FC",
+    "FCALC",
+    "FCALCAU",
+    "INTENSITYCALC",
+    "FSQUAREDCALC",
+)
+
+# A model's cell may be rounded, or measured on another crystal of the same kind.
+LENGTH_TOLERANCE = 0.005
+ANGLE_TOLERANCE_DEG = 0.5
+
+
+def read_magnitudes(
+    path: str | Path,
+    model: PackingModel,
+    column: str | None = None,
+    *,
+    skip_missing: bool = False,
+) -> Magnitudes:
+    """Read the magnitudes that a model is compared with from an MTZ, CIF or mmCIF file.
+
+    Equivalent reflections are averaged; those beyond the model's resolution, and those that its
+    group forbids, are left out. For a planar model the reflections with l = 0 are read.
+
+    Args:
+        path: the file.
+        model: the packing model; the file's cell and group, if it tells them, must be its own.
+        column: which column; by default the first there is of `PREFERRED`, or the only one of
+            its kind. Intensities are made magnitudes by their square root.
+        skip_missing: leave reflections without a value, or with an intensity below 0, out.
+
+    Raises:
+        ScenarioError: names the file, the column, and the reflection whose magnitude is missing
+            or negative; or the cell's length or angle, or the group, that is not the model's.
+        CrystalError: if gemmi is missing.
+    """
+    table = read_table(path)
+    _check_cell(table, model)
+    _check_group(table, model)
+    name = column or _choose(table)
+    if name not in table.columns or table.kinds[name] not in (MAGNITUDE, INTENSITY):
+        raise ScenarioError(
+            f"expected a column of magnitudes or intensities, {name!r} is none; {_offer(table)}",
+            file=table.file,
+        )
+    wanted = reflections_of(model)
+    places = _places(table, model, wanted.indices)
+    places[~_usable(table, name, places, skip_missing)] = -1
+    return _merge(table, name, places, wanted)
+
+
+def _offer(table: ReflectionTable) -> str:
+    fit = [name for name, kind in table.kinds.items() if kind in (MAGNITUDE, INTENSITY)]
+    return f"the file has {', '.join(fit)}" if fit else "the file has no such column"
+
+
+def _choose(table: ReflectionTable) -> str:
+    plain = {name.upper().replace("-", "").replace("_", ""): name for name in table.columns}
+    usable = {key: n for key, n in plain.items() if table.kinds[n] in (MAGNITUDE, INTENSITY)}
+    for key in PREFERRED:
+        if key in usable:
+            return usable[key]
+    for kind in (MAGNITUDE, INTENSITY):
+        found = [name for name, its in table.kinds.items() if its == kind]
+        if len(found) == 1:
+            return found[0]
+    raise ScenarioError(
+        f"expected one column of magnitudes or intensities; {_offer(table)}, name the right one"
+        if usable
+        else "expected a column of magnitudes or intensities; the file has none",
+        file=table.file,
+    )
+
+
+def _check_cell(table: ReflectionTable, model: PackingModel) -> None:
+    if table.cell is None:
+        return
+    for name, own, theirs in zip("abc", model.cell.lengths, table.cell, strict=False):
+        if abs(own - theirs) > LENGTH_TOLERANCE * own:
+            raise _cell_error(table, f"{name} = {own:g}", f"{theirs:g}")
+    count = len(model.cell.angles_deg)  # in the plane only gamma
+    names, angles = ANGLES[-count:], table.cell[-count:]
+    for name, own, theirs in zip(names, model.cell.angles_deg, angles, strict=True):
+        if abs(own - theirs) > ANGLE_TOLERANCE_DEG:
+            raise _cell_error(table, f"{name} = {own:g}", f"{theirs:g}")
+
+
+def _cell_error(table: ReflectionTable, expected: str, got: str) -> ScenarioError:
+    return ScenarioError(
+        f"expected the model's cell with {expected}, got {got}; these data are another crystal's, "
+        "or the model's cell is wrong",
+        file=table.file,
+        field="cell",
+    )
+
+
+def _check_group(table: ReflectionTable, model: PackingModel) -> None:
+    if table.operations is None or model.dimension == 2:
+        return
+    theirs = {Operation.parse(triplet).modulo() for triplet in table.operations}
+    if theirs != set(model.group.operations):
+        raise ScenarioError(
+            f"expected the model's space group {model.group.name}, got {table.group}, or another "
+            "setting of it; give the model the data's group, or reindex the data",
+            file=table.file,
+            field="space group",
+        )
+
+
+def _places(table: ReflectionTable, model: PackingModel, wanted: Integers) -> Integers:
+    """(N,), which of the model's reflections each row is; -1 for none of them."""
+    n = model.dimension
+    flat = np.all(table.indices[:, n:] == 0, axis=1)
+    own = table.indices[:, :n]
+    whole = {tuple(h): place for place, h in enumerate(wanted.tolist())}
+    standing = representatives(model.group, own).tolist()
+    places = np.array([whole.get(tuple(h), -1) for h in standing], dtype=np.int64)
+    places[~flat | absent(model.group, own)] = -1
+    if not np.any(places >= 0):
+        raise ScenarioError(
+            f"no reflection is within the model's resolution of {model.resolution:g}; the model's "
+            "unit of length may be another one than the data's",
+            file=table.file,
+        )
+    return places
+
+
+def _usable(
+    table: ReflectionTable, name: str, places: Integers, skip_missing: bool
+) -> NDArray[np.bool_]:
+    values = table.columns[name]
+    intensity = table.kinds[name] == INTENSITY
+    within = places >= 0
+    missing = within & ~np.isfinite(values)
+    negative = within & (values < 0.0)
+    skipped = missing | negative if intensity else missing
+    if not intensity and np.any(negative):
+        _refuse(table, name, negative, "a magnitude of 0 or more")
+    if not skip_missing:
+        _refuse(table, name, missing, "a magnitude", "; complete the data, or skip_missing")
+        remedy = "; make magnitudes of the intensities first, or skip_missing"
+        _refuse(table, name, negative, "an intensity of 0 or more", remedy)
+    return within & ~skipped
+
+
+def _refuse(
+    table: ReflectionTable, name: str, rows: NDArray[np.bool_], expected: str, remedy: str = ""
+) -> None:
+    """Raise an error that names the first of ``rows``, if there is one."""
+    found = np.flatnonzero(rows)
+    if not len(found):
+        return
+    value = table.columns[name][found[0]]
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    raise ScenarioError(
+        f"reflection {tuple(table.indices[found[0]].tolist())}{more}: expected {expected}, got "
+        f"{'none' if np.isnan(value) else format(value, 'g')}{remedy}",
+        file=table.file,
+        field=name,
+    )
+
+
+def _merge(table: ReflectionTable, name: str, places: Integers, wanted: Reflections) -> Magnitudes:
+    rows = places >= 0
+    counts = np.bincount(places[rows], minlength=len(wanted))
+    values, sigmas = _magnitudes(table, name)
+    sums = np.bincount(places[rows], values[rows], len(wanted))
+    found = counts > 0
+    merged = None
+    if sigmas is not None and np.all(np.isfinite(sigmas[rows]) & (sigmas[rows] >= 0.0)):
+        squares = np.bincount(places[rows], sigmas[rows] ** 2, len(wanted))
+        merged = np.sqrt(squares[found]) / counts[found]
+    return Magnitudes(
+        wanted.subset(found),
+        sums[found] / counts[found],
+        merged,
+        source=f"{table.file}: {name}",
+        relative=True,
+        missing=wanted.indices[~found],
+    )
+
+
+def _magnitudes(table: ReflectionTable, name: str) -> tuple[Array, Array | None]:
+    """Magnitudes (N,) and their uncertainties; of intensities by error propagation."""
+    values, sigmas = table.columns[name], _uncertainties(table, name)
+    if table.kinds[name] != INTENSITY:
+        return values, sigmas
+    sizes = np.sqrt(np.maximum(values, 0.0))
+    if sigmas is None:
+        return sizes, None
+    # 2 F dF = dI, and where F is about 0, F is known to the root of dI.
+    with np.errstate(invalid="ignore"):
+        return sizes, sigmas / (sizes + np.sqrt(sizes**2 + sigmas))
+
+
+def _uncertainties(table: ReflectionTable, name: str) -> Array | None:
+    for tag in (f"SIG{name}", f"SIG_{name}", f"{name}_sigma", f"{name}_su"):
+        if table.kinds.get(tag) == UNCERTAINTY:
+            return table.columns[tag]
+    stem = name.removesuffix("_au").removesuffix("_meas")
+    for tag in (f"{stem}_meas_sigma_au", f"{stem}_meas_sigma", f"{stem}_sigma", f"{stem}_su"):
+        if table.kinds.get(tag) == UNCERTAINTY:
+            return table.columns[tag]
+    return None
+
+
+def write_magnitudes(path: str | Path, magnitudes: Magnitudes, model: PackingModel) -> None:
+    """Write magnitudes to an MTZ file: column FP, and SIGFP if there are uncertainties.
+
+    MTZ files hold numbers of single precision. Planar data become reflections with l = 0 of a
+    cell in P1 with c = 1.
+
+    Raises:
+        CrystalError: if the model's group has no tabulated setting with just its operations, or
+            gemmi is missing.
+        OSError: if the file cannot be written.
+    """
+    library = gemmi()
+    mtz = library.Mtz(with_base=True)
+    mtz.spacegroup = _tabulated(model)
+    mtz.set_cell_for_all(library.UnitCell(*_parameters(model)))
+    mtz.add_dataset("data")
+    mtz.add_column("FP", "F")
+    columns = np.zeros((len(magnitudes), 4))
+    columns[:, : model.dimension] = magnitudes.indices
+    columns[:, 3] = magnitudes.values
+    if magnitudes.sigmas is not None:
+        mtz.add_column("SIGFP", "Q")
+        columns = np.column_stack([columns, magnitudes.sigmas])
+    mtz.set_data(columns.astype(np.float32))
+    with tempfile.TemporaryDirectory() as folder:
+        beside = Path(folder) / "magnitudes.mtz"
+        mtz.write_to_file(str(beside))
+        write_bytes(path, beside.read_bytes())
+
+
+def _parameters(model: PackingModel) -> tuple[float, ...]:
+    if model.dimension == 2:
+        return (*model.cell.lengths.tolist(), 1.0, 90.0, 90.0, *model.cell.angles_deg)
+    return (*model.cell.lengths.tolist(), *model.cell.angles_deg)
+
+
+def _tabulated(model: PackingModel) -> object:
+    library = gemmi()
+    if model.dimension == 2:
+        return library.find_spacegroup_by_name("P 1")
+    ops = [library.Op(operation.triplet()) for operation in model.group.operations]
+    found = library.find_spacegroup_by_ops(library.GroupOps(ops))
+    if found is None:
+        raise CrystalError(
+            f"{model.group.name}: no tabulated setting has these operations, which an MTZ file "
+            "needs; choose the group's standard axes and origin"
+        )
+    return found

@@ -73,7 +73,7 @@ def gemmi() -> ModuleType:
         import gemmi as library
     except ImportError:
         raise CrystalError(
-            "space groups by name need the library gemmi; install it with "
+            "names and types of space groups need the library gemmi; install it with "
             "pip install 'ellipsoid-planning[crystal]'"
         ) from None
     return library

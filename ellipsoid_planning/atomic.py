@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 
@@ -30,15 +31,24 @@ def write_bytes(path: str | Path, content: bytes) -> None:
     Raises:
         OSError: if the folder is missing or the file cannot be written.
     """
+    write_pieces(path, (content,))
+
+
+def write_pieces(path: str | Path, pieces: Iterable[bytes]) -> None:
+    """As :func:`write_bytes`, for content that is made while it is written.
+
+    Raises:
+        OSError: if the folder is missing or the file cannot be written.
+    """
     target = Path(path).resolve()
     if target.exists() and not target.is_file():
         with target.open("wb") as stream:
-            stream.write(content)
+            stream.writelines(pieces)
         return
     beside = partial_path(path)
     try:
         with beside.open("wb") as stream:
-            stream.write(content)
+            stream.writelines(pieces)
             stream.flush()
             os.fsync(stream.fileno())
         os.replace(beside, target)

@@ -128,10 +128,13 @@ class PackingModel:
 
     def values_of(self, configuration: ArrayLike) -> dict[str, float]:
         """A configuration (K,) as files give it: by key, angles in degrees."""
-        values = np.asarray(configuration, dtype=float)
+        return dict(zip(self.keys, self.in_file_units(configuration).tolist(), strict=True))
+
+    def in_file_units(self, configurations: ArrayLike) -> Array:
+        """Configurations (..., K) as files give them: angles in degrees."""
+        values = np.asarray(configurations, dtype=float)
         turns = [coordinate.turns for coordinate in self.molecule.coordinates]
-        shown = np.where(turns, np.degrees(values), values)
-        return dict(zip(self.keys, shown.tolist(), strict=True))
+        return np.where(turns, np.degrees(values), values)
 
     def configuration(self, values: Mapping[str, float]) -> Array:
         """The configuration (K,) of values by key, angles in degrees.

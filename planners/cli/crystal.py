@@ -23,7 +23,7 @@ def _root() -> None:
 
     [bold]ellipsoid-planning crystal models[/bold]  (what there is to pack)
 
-    [bold]ellipsoid-planning crystal show rabbit-p1 --target rabbit-p1-target --html cell.html[/bold]
+    [bold]ellipsoid-planning crystal show rabbit-p1 --html cell.html[/bold]
 
     [bold]ellipsoid-planning crystal pack rabbit-p1 --json[/bold]
 

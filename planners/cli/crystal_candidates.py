@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.cli.crystal_runs import session
+from planners.cli.crystal_runs import Workplace, session
 
 if TYPE_CHECKING:
     from ellipsoid_planning.crystal.model import PackingModel
@@ -62,16 +60,14 @@ class Candidates:
         return given
 
 
-def by_grid(
-    model: PackingModel, run: Path | None, cluster: str | None, jobs: int | None
-) -> Candidates:
-    """The free arrangements of the grid, ascending; see `crystal_runs.session`."""
+def by_grid(model: PackingModel, workplace: Workplace) -> Candidates:
+    """The free arrangements of the grid, ascending."""
     from ellipsoid_planning.crystal.run_store import run_settings
     from ellipsoid_planning.crystal.runs import FreeArrangements, piece_size, search_pieces
 
     size = piece_size(model.grid)
     pieces = search_pieces(model.grid, size)
-    with session(run, lambda: run_settings(model, "pack", piece=size), cluster, jobs) as working:
+    with session(workplace, lambda: run_settings(model, "pack", piece=size)) as working:
         began = time.perf_counter()
         title = f"Searching {model.grid.count:,} arrangements"
         found = list(working.results(title, FreeArrangements(model), pieces))
@@ -79,21 +75,3 @@ def by_grid(
     return Candidates(model, model.grid.count, numbers, time.perf_counter() - began)
 
 
-def by_potential(
-    model: PackingModel,
-    options: tuple[float | None, float | None, int | None],
-    run: Path | None,
-    cluster: str | None,
-    jobs: int | None,
-) -> Candidates:
-    """The free minima of the potential in the grid's cells, smallest first.
-
-    Args:
-        model: the packing model.
-        options: m_b, the cells' width along angles [degree], starts in each cell.
-        run, cluster, jobs: see `crystal_runs.session`.
-
-    Raises:
-        CrystalError: an option is out of its range, or the model's grid has no cells.
-    """
-    raise NotImplementedError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.crystal_runs import Cluster, Figure, Html, Jobs, Json, Model, Run
+from planners.cli.crystal_runs import Cluster, Figure, Html, Jobs, Json, Model, Run, Workplace
 from planners.cli.outputs import check_outputs
 from planners.cli.terminal import result_console, say
 
@@ -101,7 +101,7 @@ def pack(
     _check_suffixes(output, figure)
     began = time.perf_counter()
     loaded = load_model(model)
-    found = _candidates(loaded, method, (spread, step_deg, starts), run, cluster, jobs)
+    found = _candidates(loaded, method, (spread, step_deg, starts), Workplace(run, cluster, jobs))
     result = _result(loaded, method, found, time.perf_counter() - began)
     listed = min(list_, len(found))
     if output is not None:
@@ -138,9 +138,7 @@ def _candidates(
     model: PackingModel,
     method: Method,
     options: tuple[float | None, float | None, int | None],
-    run: Path | None,
-    cluster: str | None,
-    jobs: int | None,
+    workplace: Workplace,
 ) -> Candidates:
     from ellipsoid_planning.errors import CrystalError
     from planners.cli import crystal_candidates as candidates
@@ -151,8 +149,8 @@ def _candidates(
                 raise CrystalError(
                     f"--{name} {value}: it belongs to --method potential; add that or remove it"
                 )
-        return candidates.by_grid(model, run, cluster, jobs)
-    return candidates.by_potential(model, options, run, cluster, jobs)
+        return candidates.by_grid(model, workplace)
+    return candidates.by_potential(model, options, workplace)
 
 
 def _result(

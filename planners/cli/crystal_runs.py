@@ -6,6 +6,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +14,7 @@ import typer
 
 from planners.cli.interrupt import INTERRUPTED, note_interrupts
 from planners.cli.progress import progress
-from planners.cli.terminal import say
+from planners.cli.terminal import announce_compilation, say
 
 if TYPE_CHECKING:
     from ellipsoid_planning.crystal.run_store import RunStore
@@ -61,6 +62,21 @@ Html = Annotated[
 ]
 
 
+@dataclass(frozen=True)
+class Workplace:
+    """Where a run is done, as the options say.
+
+    Attributes:
+        run: the folder that it is kept in, None to keep nothing.
+        cluster: a Dask scheduler's address, ``local``, or None for threads here.
+        jobs: threads or local workers; None for one a core.
+    """
+
+    run: Path | None
+    cluster: str | None
+    jobs: int | None
+
+
 class Session:
     """One command at work on a run.
 
@@ -83,6 +99,7 @@ class Session:
         """
         from ellipsoid_planning.crystal.runs import done
 
+        announce_compilation()
         with progress(title, len(pieces)) as update:
             for _, result in done(
                 work,
@@ -96,19 +113,12 @@ class Session:
 
 
 @contextmanager
-def session(
-    folder: Path | None,
-    settings: Callable[[], Mapping[str, Any]],
-    cluster: str | None,
-    jobs: int | None,
-) -> Iterator[Session]:
+def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> Iterator[Session]:
     """A session, once everything is known to be in order; Ctrl-C ends it with 130.
 
     Args:
-        folder: of the run, None to keep nothing.
+        workplace: where the work is done and kept.
         settings: what the run's pieces depend on.
-        cluster: a Dask scheduler's address, ``local``, or None for threads here.
-        jobs: threads or local workers; None for one a core.
 
     Raises:
         EllipsoidPlanningError: the folder cannot be used or holds another run, or the cluster
@@ -116,10 +126,10 @@ def session(
     """
     from ellipsoid_planning.crystal.run_store import RunStore
 
-    store = None if folder is None else RunStore(folder)
+    store = None if workplace.run is None else RunStore(workplace.run)
     if store is not None:
         store.check(settings())
-    with _executor(cluster, jobs) as execute:
+    with _executor(workplace.cluster, workplace.jobs) as execute:
         if store is not None:
             store.open(settings())
         try:

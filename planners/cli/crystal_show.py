@@ -142,8 +142,8 @@ def _summary(model: PackingModel, chosen: NDArray[np.float64] | None) -> dict[st
         "group": model.group.name,
         "operations": [operation.triplet() for operation in model.group.operations],
         "cell": {
-            "lengths": model.cell.lengths.tolist(),
-            "angles_deg": model.cell.angles_deg.tolist(),
+            "lengths": [float(length) for length in model.cell.lengths],
+            "angles_deg": [float(angle) for angle in model.cell.angles_deg],
             "volume": model.cell.volume,
         },
         "volume_ratio": copies * model.molecule.volume / model.cell.volume,

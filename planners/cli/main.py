@@ -9,6 +9,7 @@ import typer
 from ellipsoid_planning import __version__
 from planners.cli.benchmark import benchmark
 from planners.cli.command_group import CommandGroup
+from planners.cli.crystal import app as crystal
 from planners.cli.family import family
 from planners.cli.figure import figure
 from planners.cli.group import app as group
@@ -96,6 +97,7 @@ def _imports() -> None:
 
 app.add_typer(imports, name="import")
 app.add_typer(group, name="group")
+app.add_typer(crystal, name="crystal")
 
 
 def main() -> None:

@@ -73,5 +73,3 @@ def by_grid(model: PackingModel, workplace: Workplace) -> Candidates:
         found = list(working.results(title, FreeArrangements(model), pieces))
     numbers = np.concatenate(found)
     return Candidates(model, model.grid.count, numbers, time.perf_counter() - began)
-
-

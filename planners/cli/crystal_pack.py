@@ -150,7 +150,7 @@ def _candidates(
                     f"--{name} {value}: it belongs to --method potential; add that or remove it"
                 )
         return candidates.by_grid(model, workplace)
-    return candidates.by_potential(model, options, workplace)
+    raise CrystalError("--method potential: it is not built in yet; take --method grid")
 
 
 def _result(

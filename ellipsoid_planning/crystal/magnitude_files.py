@@ -107,6 +107,8 @@ def _choose(table: ReflectionTable) -> str:
         found = [name for name, its in table.kinds.items() if its == kind]
         if len(found) == 1:
             return found[0]
+        if found:
+            break
     raise ScenarioError(
         f"expected one column of magnitudes or intensities; {_offer(table)}, name the right one"
         if usable

@@ -29,33 +29,73 @@ class Overlap(NamedTuple):
     second: Ellipsoid
     inside: Array
 
+    def surface(self, longitudes: int = 48, latitudes: int = 12) -> Array:
+        """Points (2·latitudes + 1, longitudes + 1, 3) of the boundary in space, row by row.
+
+        The rows run from where the first body ends to where the second one does, and the middle
+        row on the edge between them.
+        """
+        normal, others = self._frame()
+        azimuth = np.linspace(0.0, 2.0 * np.pi, longitudes + 1)
+        around = np.column_stack([np.cos(azimuth), np.sin(azimuth)]) @ others
+        low, high = np.zeros(len(around)), np.full(len(around), np.pi)
+        for _ in range(STEPS):
+            polar = 0.5 * (low + high)
+            directions = np.cos(polar)[:, None] * normal + np.sin(polar)[:, None] * around
+            before = np.less(*self._reaches(directions))
+            low, high = np.where(before, polar, low), np.where(before, high, polar)
+        share = np.sin(np.linspace(0.0, 0.5 * np.pi, latitudes + 1))[:, None]  # finest at the edge
+        rows = np.concatenate([share * low, np.pi - (np.pi - low) * share[-2::-1]])[..., None]
+        directions = np.cos(rows) * normal + np.sin(rows) * around
+        return self.boundary(directions.reshape(-1, 3)).reshape(directions.shape)
+
     def boundary(self, directions: Array) -> Array:
         """The boundary points (m, n) seen from ``inside`` along directions (m, n)."""
-        reach = np.minimum(*(_reach(b, self.inside, directions) for b in (self.first, self.second)))
+        reach = np.minimum(*self._reaches(directions))
         return np.asarray(self.inside + reach[:, None] * directions)
 
+    def _reaches(self, directions: Array) -> tuple[Array, Array]:
+        """How far both bodies extend along directions (m, n)."""
+        first, second = (_reach(b, self.inside, directions) for b in (self.first, self.second))
+        return first, second
 
-def overlaps(model: PackingModel, drawn: Sequence[Copy]) -> list[Overlap]:
-    """All overlaps among these copies, in the order of their bodies.
+    def _frame(self) -> tuple[Array, Array]:
+        """The first body's outward normal (3,), and two directions (2, 3) across it."""
+        inverse = np.linalg.inv(self.first.matrix)
+        normal = inverse.T @ (inverse @ (self.inside - self.first.centre))
+        if not np.any(normal):
+            normal = self.second.centre - self.first.centre
+        if not np.any(normal):
+            normal = np.array([0.0, 0.0, 1.0])
+        frame = np.linalg.svd(normal[None])[2]
+        if np.linalg.det(frame) < 0.0:
+            frame[2] = -frame[2]
+        return np.asarray(normal / np.linalg.norm(normal)), frame[1:]
+
+
+def overlaps(
+    model: PackingModel, chosen: Sequence[Copy], others: Sequence[Copy] = ()
+) -> list[Overlap]:
+    """All overlaps of the chosen copies with each other and with other ones.
 
     Parts of one molecule that are joined, or are allowed to overlap, do not count.
     """
     from ellipsoid_planning.crystal.collisions import watched_pairs
 
-    bodies = [body for copy in drawn for body in copy.bodies]
-    pairs = _near_pairs(bodies)
+    bodies = [body for copy in (*chosen, *others) for body in copy.bodies]
+    pairs = _near_pairs(bodies, len(chosen) * len(model.parts))
     owner, part = np.divmod(pairs, len(model.parts))
     watched = {frozenset(pair) for pair in watched_pairs(model)}
     own = [frozenset(row) in watched for row in part.tolist()]
     return _meeting(bodies, pairs[(owner[:, 0] != owner[:, 1]) | np.array(own, dtype=bool)])
 
 
-def _near_pairs(bodies: Sequence[Ellipsoid]) -> NDArray[np.int64]:
-    """Pairs (k, 2) whose circumscribed balls meet."""
+def _near_pairs(bodies: Sequence[Ellipsoid], first: int) -> NDArray[np.int64]:
+    """Pairs (k, 2) with one or two of the ``first`` bodies, whose circumscribed balls meet."""
     centres = np.array([body.centre for body in bodies])
     radii = np.array([body.semi_axes.max() for body in bodies])
     found = [np.zeros((0, 2), dtype=np.int64)]
-    for i in range(len(bodies)):
+    for i in range(first):
         distance = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1)
         near = i + 1 + np.flatnonzero(distance < radii[i + 1 :] + radii[i])
         found.append(np.column_stack([np.full(len(near), i), near]))

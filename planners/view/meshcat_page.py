@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planners.view import colours
-from planners.view.meshcat_scene import ROOT, Scene, build_scene
+from planners.view.meshcat_scene import Scene, build_scene
+from planners.view.meshcat_surroundings import ROOT
 from planners.view.writing import write_whole
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from planners.view import colours, meshcat_shapes
-from planners.view.camera import FIELD_OF_VIEW_DEG, Camera, frame, side_view
+from planners.view.camera import Camera, frame, side_view
 from planners.view.embedding import (
     ABOVE,
     FLOOR,
@@ -26,6 +26,7 @@ from planners.view.embedding import (
 from planners.view.links import followed_points, link_colours, link_shades
 from planners.view.meshcat_animation import animate
 from planners.view.meshcat_robot import hang_robot, named, place_robot
+from planners.view.meshcat_surroundings import EYE_DISTANCE, ROOT, set_surroundings
 from planners.view.surfaces import path_radius
 from planners.view.trajectory import Trajectory, follow
 
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
     from ellipsoid_planning.roadmap.graph import RoadmapGraph
     from ellipsoid_planning.scenario import Scenario
 
-ROOT = "scenario"
-EYE_DISTANCE = 2.0  # at which meshcat's own lights suit the scene
 THICKNESS = 0.012  # of a planar body, as a part of the scene's size
 FRAME_RADIUS = 0.0015  # of an arena's outline or the bounds' edges, likewise
 PATH_TOLERANCE = 0.02  # how far the drawn path may be off, in its own radii
@@ -110,7 +109,7 @@ class _SceneBuilder:
         self.root = self.visualizer["/" + ROOT]
         self.folders: list[tuple[str, str]] = []
         self.links: list[tuple[str, str]] = []
-        self._set_surroundings()
+        set_surroundings(self.visualizer, self.camera, self.world.dimension)
 
     def draw_world(self) -> None:
         if self.world.arenas:
@@ -150,27 +149,6 @@ class _SceneBuilder:
         node["nodes"].set_object(meshcat_shapes.dots(points, colours.ROADMAP, DOT * EYE_DISTANCE))
         node.set_property("visible", visible)
         self.folders.append(("roadmap", colours.ROADMAP))
-
-    def _set_surroundings(self) -> None:
-        """Scale the scene to the reach of meshcat's lights, and set camera and background.
-
-        The centre of the scene becomes the origin, about which meshcat's mouse controls turn.
-        """
-        scale = EYE_DISTANCE / self.camera.distance
-        matrix = np.diag([scale, scale, scale, 1.0])
-        matrix[:3, 3] = -scale * self.camera.centre
-        self.root.set_transform(matrix)
-        for name in ("/Grid", "/Axes"):
-            self.visualizer[name].set_property("visible", False)
-        self.visualizer["/Background"].set_property("top_color", [1.0, 1.0, 1.0])
-        self.visualizer["/Background"].set_property("bottom_color", [0.93, 0.95, 0.97])
-        x, y, z = (float(coordinate) for coordinate in EYE_DISTANCE * self.camera.back)
-        # Straight above, the mouse controls would not know which way is up.
-        tilt = 1e-4 if self.world.dimension == 2 else 0.0
-        eye = self.visualizer["/Cameras/default/rotated/<object>"]
-        eye.set_property("fov", FIELD_OF_VIEW_DEG)
-        eye.set_property("near", 0.02)
-        eye.set_property("position", [x, z, -y + tilt])  # this node counts y upwards
 
     def _draw_arenas(self) -> None:
         look: dict[str, Any] = {"opacity": 0.25, "depthWrite": False}

@@ -29,7 +29,13 @@ def ellipsoid_patches(
         ],
         axis=-1,
     )
-    return _patches(body.centre + ball @ body.matrix.T)
+    return grid_patches(body.centre + ball @ body.matrix.T)
+
+
+def fan_patches(outline: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the flat patches (k, 4, 3) of a convex outline (k, 3), as anticlockwise as it is."""
+    middle = np.broadcast_to(outline.mean(axis=0), outline.shape)
+    return np.stack([middle, middle, outline, np.roll(outline, -1, axis=0)], axis=1)
 
 
 def tube_patches(
@@ -77,10 +83,10 @@ def _cylinder_patches(
     ring = radius * (
         np.outer(np.cos(angle), across) + np.outer(np.sin(angle), np.cross(along, across))
     )
-    return _patches(np.stack([second + ring, first + ring]))
+    return grid_patches(np.stack([second + ring, first + ring]))
 
 
-def _patches(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+def grid_patches(grid: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the cells (r*c, 4, 3) of a grid (r+1, c+1, 3) of points."""
     corners = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])
     return np.stack(corners, axis=2).reshape(-1, 4, 3)

@@ -1,0 +1,143 @@
+"""How errors fall while candidates are refined (thesis figs. 3.14 and 3.19)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ellipsoid_planning.errors import CrystalError
+from planners.view import colours
+from planners.view.figures_crystal import saved
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+PANEL = (4.0, 3.4)  # [inches]
+HUES = (colours.ROBOT, colours.GOAL, colours.START, "#aa4499")
+FEW = 12  # trials that have a thin line each
+
+
+@dataclass(frozen=True, eq=False)
+class Trend:
+    """One error over the steps of many trials.
+
+    Attributes:
+        name, unit: of the error, such as MAE and °.
+        steps: (s,), increasing.
+        values: (trials, s), each trial's error at each step; not a number from where it has
+            stopped, so that its last one holds, which must not come first.
+    """
+
+    name: str
+    unit: str
+    steps: Array
+    values: Array
+
+    @classmethod
+    def of(cls, name: str, unit: str, histories: Iterable[tuple[ArrayLike, ArrayLike]]) -> Trend:
+        """The trend of trials with steps of their own: each is its steps and its errors there.
+
+        An error holds until the next step that is given.
+        """
+        trials = [(np.asarray(s, dtype=float), np.asarray(v, dtype=float)) for s, v in histories]
+        steps = np.unique(np.concatenate([np.zeros(0), *(s for s, _ in trials)]))
+        rows = []
+        for own, values in trials:
+            place = np.searchsorted(own, steps, side="right") - 1
+            rows.append(np.where(place >= 0, values[np.maximum(place, 0)], values[0]))
+        return cls(name, unit, steps, np.array(rows).reshape(len(trials), len(steps)))
+
+    def filled(self) -> Array:
+        """The values with each trial's last one kept.
+
+        Raises:
+            CrystalError: if there is nothing to draw, or a trial has no first value.
+        """
+        values = np.array(self.values, dtype=float)
+        if values.ndim != 2 or values.shape[1] != len(self.steps) or values.size == 0:
+            raise CrystalError(
+                f"{self.name}: expected errors (trials, {len(self.steps)}), at least one trial and "
+                f"one step, got shape {values.shape}"
+            )
+        if np.any(np.isnan(values[:, 0])):
+            raise CrystalError(f"{self.name}: a trial has no error at its first step")
+        known = np.where(np.isnan(values), 0, np.arange(values.shape[1]))
+        return np.take_along_axis(values, np.maximum.accumulate(known, axis=1), axis=1)
+
+
+def picture_of_trends(trends: Sequence[Trend], suffix: str, title: str = "") -> bytes:
+    """Draw the median and the spread of errors over steps, a panel each, as a picture's bytes.
+
+    Raises:
+        CrystalError: if a trend has nothing to draw.
+    """
+    return saved(draw_trends(trends, title), suffix)
+
+
+def draw_trends(trends: Sequence[Trend], title: str = "") -> Figure:
+    """Return the matplotlib figure."""
+    from matplotlib.figure import Figure
+
+    if not trends:
+        raise CrystalError("expected at least one error to draw over the steps, got none")
+    width = max(PANEL[0] * len(trends), 5.0)
+    drawn = Figure(figsize=(width, PANEL[1] + 0.7), layout="constrained")
+    count = len(trends[0].values)
+    trials = f"{count} trial{'s' if count != 1 else ''}"
+    drawn.suptitle(f"{title}: {trials}" if title else trials, fontsize=12, fontweight="bold")
+    for index, trend in enumerate(trends):
+        axes = drawn.add_subplot(1, len(trends), index + 1)
+        _draw_trend(axes, trend, HUES[index % len(HUES)])
+        axes.set_xlabel("steps", fontsize=9)
+    handles, labels = drawn.axes[0].get_legend_handles_labels()
+    drawn.legend(
+        handles, labels, loc="outside lower center", ncols=len(labels), fontsize=9, frameon=False
+    )
+    return drawn
+
+
+def _draw_trend(axes: Axes, trend: Trend, hue: str) -> None:
+    values, steps = trend.filled(), trend.steps
+    low, first, middle, third, high = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0], axis=0)
+    if len(values) > 1:
+        axes.fill_between(
+            steps, low, high, color=colours.tint(hue, 0.85), linewidth=0, label="all trials"
+        )
+        axes.fill_between(
+            steps, first, third, color=colours.tint(hue, 0.6), linewidth=0, label="half of them"
+        )
+    if 1 < len(values) <= FEW:
+        for row in values:
+            axes.plot(steps, row, color=colours.tint(hue, 0.35), linewidth=0.6)
+    axes.plot(steps, middle, color=hue, linewidth=2.2, label="median")
+    _mark_ends(axes, steps, middle)
+    unit = f" [{trend.unit}]" if trend.unit else ""
+    axes.set_title(f"{trend.name}{unit}", loc="left", fontsize=10)
+    axes.set_ylim(0.0, 1.08 * max(float(high.max()), 1e-12))
+    axes.set_xlim(steps[0], steps[-1] if len(steps) > 1 else steps[0] + 1.0)
+    axes.tick_params(labelsize=8)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _mark_ends(axes: Axes, steps: Array, middle: Array) -> None:
+    """Write the median before and after."""
+    for index, side in ((0, "left"), (-1, "right")):
+        axes.annotate(
+            f"{middle[index]:.3g}",
+            (steps[index], middle[index]),
+            xytext=(4 if index == 0 else -4, 6),
+            textcoords="offset points",
+            ha=side,
+            fontsize=9,
+            fontweight="bold",
+        )

@@ -1,0 +1,315 @@
+"""What is drawn of a crystal is what is there."""
+
+import base64
+import itertools
+import json
+import re
+
+import numpy as np
+import pytest
+import umsgpack
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Ellipse as EllipsePatch
+
+from ellipsoid_planning.crystal.copies import copies, middle_of
+from ellipsoid_planning.crystal.model import load_model, load_target
+from ellipsoid_planning.crystal.model_build import model_of
+from ellipsoid_planning.crystal.overlaps import overlaps
+from ellipsoid_planning.errors import CrystalError
+from ellipsoid_planning.geometry import Ellipsoid
+from ellipsoid_planning.scenario_origin import Origin
+from planners.view import crystal_colours as palette
+from planners.view.colours import rgb
+from planners.view.crystal_cell import drawn_cell, pretty_group
+from planners.view.crystal_page import MOLECULE, page_of_cell
+from planners.view.crystal_space import along, oblique, rendered, window
+from planners.view.crystal_tables import candidates_rows, candidates_table
+from planners.view.figures_crystal import draw_cell, picture_of_cell
+from planners.view.figures_crystal_candidates import picture_of_candidates
+from planners.view.figures_crystal_trends import Trend, draw_trends, picture_of_trends
+
+NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
+
+
+def target_of(name):
+    model = load_model(name)
+    return model, load_target(f"{name}-target", model)
+
+
+def colliding(model, seed=0):
+    rng = np.random.default_rng(seed)
+    numbers = rng.integers(model.grid.count, size=50)
+    found = model.grid.configurations(numbers)
+    return found[np.flatnonzero(~model.are_free(found))[0]]
+
+
+def in_group(name, group, lengths, angles=None):
+    """A bundled model in another crystal."""
+    document = {**load_model(name).document, "group": group, "cell": {"lengths": lengths}}
+    if angles is not None:
+        document["cell"]["angles_deg"] = angles
+    return model_of(document, Origin())
+
+
+def test_each_cell_has_one_copy_for_each_operation():
+    for name, sides in itertools.product(NAMES, ((1, 1, 1), (2, 1, 3))):
+        model, q = target_of(name)
+        n = model.dimension
+        low = np.array([-1.0, 0.25, 0.5])[:n]
+        found = copies(model, q, low, low + sides[:n])
+        assert len(found) == model.group.order * np.prod(sides[:n])
+        assert len({(copy.operation, copy.lattice) for copy in found}) == len(found)
+        turns, shifts = model.group.cartesian(model.cell)
+        for copy in found:
+            moved = shifts[copy.operation] + model.cell.cartesian(copy.lattice)
+            middle = turns[copy.operation] @ middle_of(model, q) + moved
+            place = model.cell.fractional(middle)
+            assert np.all(place >= low - 1e-8) and np.all(place < low + sides[:n])
+            for body, first in zip(copy.bodies, model.molecule.bodies(q), strict=True):
+                turned = turns[copy.operation] @ first.shape_matrix @ turns[copy.operation].T
+                np.testing.assert_allclose(body.shape_matrix, turned, atol=1e-9)
+                centre = turns[copy.operation] @ first.centre + moved
+                np.testing.assert_allclose(body.centre, centre, atol=1e-9)
+
+
+def test_middles_on_a_border_are_counted_once():
+    model, q = target_of("rabbit-p1")
+    place = model.cell.fractional(middle_of(model, q))
+    for side in (0.0, 1e-13, -1e-13):
+        assert len(copies(model, q, place + side, place + side + 2.0)) == 8
+
+
+def test_reflections_keep_shapes():
+    model = in_group("rabbit-p1", "P-1", [40, 40, 40])
+    q = np.zeros(len(model.keys))
+    for copy in copies(model, q, [0, 0, 0], [1, 1, 1]):
+        for body, first in zip(copy.bodies, model.molecule.bodies(q), strict=True):
+            np.testing.assert_allclose(body.shape_matrix, first.shape_matrix, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_overlaps_are_there_where_an_arrangement_is_not_free(name):
+    model, target = target_of(name)
+    rng = np.random.default_rng(1)
+    for q in [target, *model.grid.configurations(rng.integers(model.grid.count, size=6))]:
+        cell = drawn_cell(model, q, (1,) * model.dimension)
+        assert (not cell.overlaps) == model.is_free(q)
+        for overlap in cell.overlaps:
+            assert overlap.first.contains(overlap.inside)
+            assert overlap.second.contains(overlap.inside)
+            directions = rng.normal(size=(50, model.dimension))
+            directions /= np.linalg.norm(directions, axis=1)[:, None]
+            edge = overlap.boundary(directions)
+            if model.dimension == 3:
+                edge = np.concatenate([edge, overlap.surface(12, 4).reshape(-1, 3)])
+            for body in (overlap.first, overlap.second):
+                reach = np.linalg.norm((edge - body.centre) @ np.linalg.inv(body.matrix).T, axis=1)
+                assert np.all(reach < 1.0 + 1e-9)
+
+
+def test_parts_that_may_overlap_do_not_count():
+    model, q = target_of("rabbit-p1")
+    face, ear, _ = model.molecule.bodies(q)
+    assert face.contains(ear.centre + 0.0) or face.support(ear.centre) > 0.0
+    assert overlaps(model, copies(model, q, *_home(model, q))) == []
+
+
+def _home(model, q):
+    corner = model.cell.fractional(middle_of(model, q)) - 0.5
+    return corner, corner + 1.0
+
+
+def test_planar_figures_have_an_ellipse_for_each_body_and_yellow_for_each_overlap():
+    for group, q_of in (("p1", lambda m: target_of("rabbit-plane")[1]), ("p1", colliding)):
+        model = in_group("rabbit-plane", group, [6.75, 9])
+        cell = drawn_cell(model, q_of(model), (2, 3))
+        axes = draw_cell(cell).axes[0]
+        drawn = [patch for patch in axes.patches if isinstance(patch, EllipsePatch)]
+        assert len(drawn) == 3 * 6
+        centres = {tuple(np.round(patch.center, 6)) for patch in drawn}
+        expected = {tuple(np.round(b.centre, 6)) for c in cell.copies for b in c.bodies}
+        assert centres == expected
+        yellow = np.array([*rgb(palette.OVERLAP), 1.0])
+        lit = [p for p in axes.patches if np.allclose(p.get_facecolor(), yellow)]
+        assert len(lit) == len(cell.overlaps)
+        assert bool(lit) != model.is_free(cell.configuration)
+
+
+def test_plane_groups_have_a_colour_for_each_operation():
+    model = in_group("rabbit-plane", "p6", [30, 30], 120)
+    cell = drawn_cell(model, target_of("rabbit-plane")[1], (1, 1))
+    axes = draw_cell(cell).axes[0]
+    faces = {patch.get_facecolor()[:3] for patch in axes.patches[-18:]}
+    assert {tuple(rgb(hue)) for hue in cell.hues} <= {tuple(face) for face in faces}
+    assert len(set(palette.operation_colours(192))) == 192
+    assert palette.OVERLAP not in palette.operation_colours(192)
+
+
+def test_spatial_views_show_bodies_where_they_project():
+    model, q = target_of("rabbit-p212121")
+    cell = drawn_cell(model, q)
+    for camera in (oblique(cell), along(cell, 2)):
+        low, high = window(cell, camera)
+        image = rendered(cell, camera, low, high, 300)
+        bodies = [(i, body) for i, copy in enumerate(cell.copies) for body in copy.bodies]
+        # The nearest point of all bodies is seen, and none is nearer than the picture's depth.
+        tops = [(camera.axes(body.support_points(camera.back)[None])[0], i) for i, body in bodies]
+        nearest, owner = max(tops, key=lambda top: top[0][2])
+        column, row = ((nearest[:2] - low) / image.spacing).astype(int)
+        assert image.owners[row, column] == owner
+        for point, _ in tops:
+            column, row = ((point[:2] - low) / image.spacing).astype(int)
+            assert image.depths[row, column] > point[2] - 0.01 * (high - low).max()
+
+
+def test_a_ray_image_meets_bodies_exactly():
+    model, q = target_of("rabbit-p1")
+    cell = drawn_cell(model, q)
+    camera = oblique(cell)
+    low, high = window(cell, camera)
+    image = rendered(cell, camera, low, high, 120)
+    body = Ellipsoid.from_semi_axes([3.0, 2.0, 1.0], cell.copies[0].bodies[0].centre)
+    alone = type(image)(camera, low, high, 120)
+    alone.add(body, "#ffffff", 0)
+    area = np.isfinite(alone.depths).sum() * alone.spacing**2
+    plane = np.array([camera.right, camera.up]) @ body.matrix
+    assert area == pytest.approx(np.pi * np.sqrt(np.linalg.det(plane @ plane.T)), rel=0.02)
+    rows, columns = np.nonzero(np.isfinite(alone.depths))
+    across, up = (low + (np.column_stack([columns, rows]) + 0.5) * alone.spacing).T
+    depth = alone.depths[rows, columns]
+    points = camera.centre + np.column_stack([across, up, depth]) @ np.array(
+        [camera.right, camera.up, camera.back]
+    )
+    reach = np.linalg.norm((points - body.centre) @ np.linalg.inv(body.matrix).T, axis=1)
+    np.testing.assert_allclose(reach, 1.0, atol=1e-9)
+
+
+def test_overlaps_are_yellow_in_space():
+    model, _ = target_of("rabbit-p1")
+    cell = drawn_cell(model, colliding(model), (1, 1, 1))
+    camera = oblique(cell)
+    low, high = window(cell, camera)
+    colours = rendered(cell, camera, low, high, 200).colours
+    yellow = (colours[..., 0] > 0.6) & (colours[..., 1] > 0.55) & (colours[..., 2] < 0.35)
+    assert cell.overlaps
+    assert yellow.sum() > 20
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_formats(suffix):
+    first = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
+    model, q = target_of("rabbit-plane")
+    errors = {"MAE [°]": [1.0, 2.0]}
+    trend = Trend.of("MAE", "°", [([0, 5], [3.0, 1.0]), ([0, 2], [4.0, 2.0])])
+    for content in (
+        picture_of_cell(model, q, suffix),
+        picture_of_candidates(model, [q, q + 0.1], [0.1, 0.2], suffix, q, errors, shown=2),
+        picture_of_trends([trend], suffix),
+    ):
+        assert content.startswith(first)
+
+
+def test_a_spatial_picture_is_written_whole():
+    model, q = target_of("rabbit-p212121")
+    assert picture_of_cell(model, q, "png").startswith(b"\x89PNG")
+    assert len(draw_cell(drawn_cell(model, q)).axes) == 4
+
+
+def commands_of(page):
+    listed = json.loads(re.search(r"of (\[.*?\])\)\s", page, re.DOTALL).group(1))
+    return [umsgpack.unpackb(base64.b64decode(command)) for command in listed]
+
+
+def test_the_page_holds_all_bodies():
+    for name, cells in (("rabbit-plane", (3, 2)), ("rabbit-p212121", (1, 1, 1))):
+        model, q = target_of(name)
+        cell = drawn_cell(model, q, cells)
+        page = page_of_cell(model, q, cells, lines=["<from a test>"])
+        assert "&lt;from a test&gt;" in page
+        assert "default-src 'none'" in page
+        commands = commands_of(page)
+        assert not re.search(r"<(?:link|iframe|img|script)[^>]*(?:src|href)=", page)
+        bodies = [c for c in commands if c["type"] == "set_object" and "/cell/" not in c["path"]]
+        assert len(bodies) == len(cell.copies) * 3
+        placed = {
+            tuple(np.round(np.array(c["matrix"]).reshape(4, 4).T[: model.dimension, 3], 5))
+            for c in commands
+            if c["type"] == "set_transform" and c["path"].count("/") > 4
+        }
+        expected = {tuple(np.round(b.centre, 5)) for c in cell.copies for b in c.bodies}
+        assert placed == expected
+        assert sum(f"/{MOLECULE}/" in c["path"] for c in bodies) == 3
+        edges = sum("/cell/" in c["path"] for c in commands if c["type"] == "set_object")
+        assert edges == len(cell.home_edges()) + len(cell.neighbour_lines())
+
+
+def test_the_page_shows_overlaps():
+    for name in ("rabbit-plane", "rabbit-p1"):
+        model, _ = target_of(name)
+        q = colliding(model)
+        cell = drawn_cell(model, q, (1,) * model.dimension)
+        commands = commands_of(page_of_cell(model, q, (1,) * model.dimension))
+        assert sum("/overlaps/" in c["path"] for c in commands) == len(cell.overlaps) > 0
+
+
+def test_edges_of_cells():
+    model, q = target_of("rabbit-p212121")
+    cell = drawn_cell(model, q, (2, 1, 1))
+    assert len(cell.home_edges()) == 12
+    assert len(cell.neighbour_lines()) == 8
+    plane = drawn_cell(*target_of("rabbit-plane"))
+    assert len(plane.home_edges()) == 4
+    assert len(plane.neighbour_lines()) == 24 - 4
+
+
+def test_candidates_are_listed_with_their_target():
+    model, q = target_of("rabbit-p1")
+    titles, rows = candidates_rows(model, [q, q + 0.1], [0.5, 1.0], q, {"E_h": [1, 2]})
+    assert titles[0] == "candidate" and titles[-2:] == ["FCF", "E_h"]
+    assert [row[0] for row in rows] == ["target", "1", "2"]
+    assert rows[0][1:4] == ["33.42", "47.89", "13.02"]
+    assert rows[2][-2:] == ["1", "2"]
+    assert candidates_table(model, [q], [0.5]).row_count == 1
+    with pytest.raises(CrystalError, match="one a candidate, got 1"):
+        candidates_rows(model, [q, q], [0.5, 1.0], errors={"E_h": [1.0]})
+    with pytest.raises(CrystalError, match="expected candidates"):
+        candidates_rows(model, [q[:2]], [0.5])
+
+
+def test_trends_keep_the_last_error_of_trials_that_stopped():
+    trend = Trend.of("MAE", "°", [([0, 4], [8.0, 4.0]), ([0, 1, 2], [6.0, 5.0, 1.0])])
+    np.testing.assert_array_equal(trend.steps, [0, 1, 2, 4])
+    np.testing.assert_array_equal(trend.values, [[8, 8, 8, 4], [6, 5, 1, 1]])
+    stopped = Trend("E_h", "", np.arange(3), np.array([[3.0, 2.0, np.nan], [5.0, np.nan, np.nan]]))
+    np.testing.assert_array_equal(stopped.filled(), [[3, 2, 2], [5, 5, 5]])
+    (axes,) = draw_trends([trend]).axes
+    median = next(line for line in axes.lines if line.get_label() == "median")
+    np.testing.assert_allclose(median.get_ydata(), [7.0, 6.5, 4.5, 2.5])
+    with pytest.raises(CrystalError, match="first step"):
+        Trend("E_h", "", np.arange(2), np.array([[np.nan, 1.0]])).filled()
+    with pytest.raises(CrystalError, match="at least one"):
+        draw_trends([])
+
+
+def test_bad_cells_are_refused():
+    model, q = target_of("rabbit-plane")
+    for cells, message in (((2,), "expected 2 whole"), ((0, 1), "from 1 on"), ((99, 99), "fewer")):
+        with pytest.raises(CrystalError, match=message):
+            drawn_cell(model, q, cells)
+    with pytest.raises(CrystalError, match="configuration of 3"):
+        drawn_cell(model, q[:2])
+
+
+def test_group_names_have_subscripts():
+    for group, lengths, name in (
+        ("P212121", [60, 60, 60], "P2₁2₁2₁"),
+        ("P1", [60, 60, 60], "P1"),
+        ("P41", [60, 60, 60], "P4₁"),
+        ("P4322", [60, 60, 60], "P4₃22"),
+    ):
+        assert pretty_group(in_group("rabbit-p1", group, lengths)) == name
+
+
+def test_figures_render_without_warnings():
+    model, q = target_of("rabbit-plane")
+    FigureCanvasAgg(draw_cell(drawn_cell(model, q), "title $ & <text>")).draw()

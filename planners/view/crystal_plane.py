@@ -51,12 +51,9 @@ def draw_plane_cell(
             zorder=5,
         )
     if other is not None:
+        look = {"fill": False, "edgecolor": "black", "linestyle": "--", "linewidth": 1.2}
         for body in other.home[0].bodies:
-            axes.add_patch(
-                ellipse(
-                    body, fill=False, edgecolor="black", linestyle="--", linewidth=1.2, zorder=7
-                )
-            )
+            axes.add_patch(ellipse(body, zorder=7, **look))
     _draw_lines(axes, cell)
     finish(axes)
     low, high = plane_window(cell) if window is None else window
@@ -99,7 +96,7 @@ def _name_axes(axes: Axes, cell: DrawnCell) -> None:
         outward = -_rejected(basis[:, across], basis[:, along])
         axes.annotate(
             name,
-            corner + 0.5 * basis[:, along],
+            tuple(corner + 0.5 * basis[:, along]),
             xytext=tuple(11.0 * outward),
             textcoords="offset points",
             ha="center",

@@ -140,8 +140,10 @@ def _name_axes(axes: Axes, cell: DrawnCell, camera: Camera, beyond: float) -> No
         length = float(np.linalg.norm(last - first))
         if length < 0.1 * np.linalg.norm(column):
             continue
+        x, y = last + beyond * (last - first) / length
         axes.text(
-            *(last + beyond * (last - first) / length),
+            x,
+            y,
             name,
             ha="center",
             va="center",

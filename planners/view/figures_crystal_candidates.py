@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -59,9 +59,12 @@ def picture_of_candidates(
     """
     table = candidates_rows(model, configurations, costs, target, errors, cost_name)
     candidates, found = checked_candidates(model, configurations, costs)
-    panels = [] if target is None else [("target", np.asarray(target, dtype=float))]
-    for i in range(min(shown, len(candidates))):
-        panels.append((f"candidate {i + 1}, {cost_name} {found[i]:.4g}", candidates[i]))
+    panels = [
+        (f"candidate {i + 1}, {cost_name} {found[i]:.4g}", candidates[i])
+        for i in range(min(shown, len(candidates)))
+    ]
+    if target is not None:
+        panels.insert(0, (TARGET, np.asarray(target, dtype=float)))
     drawn_cells = cells if cells is not None else (1,) * model.dimension
     drawn = draw_candidates(model, panels, table, drawn_cells, title or model.name)
     return saved(drawn, suffix)
@@ -89,7 +92,8 @@ def draw_candidates(
         figsize=(max(width, LEAST_WIDTH), height + below + MARGINS), layout="constrained"
     )
     drawn.suptitle(title, fontsize=13, fontweight="bold")
-    upper, lower = drawn.subfigures(2, 1, height_ratios=(height + 0.5, below))
+    parts: Any = drawn.subfigures(2, 1, height_ratios=(height + 0.5, below))
+    upper, lower = parts
     has_target = bool(panels) and panels[0][0] == TARGET
     _draw_panels(upper, [name for name, _ in panels], views, has_target)
     _draw_table(lower.add_subplot(), table)
@@ -108,10 +112,8 @@ def _draw_panels(
     plane = views[0].model.dimension == 2
     if plane:
         corners = [plane_window(view) for view in views]
-        shared = (
-            np.min([low for low, _ in corners], axis=0),
-            np.max([h for _, h in corners], axis=0),
-        )
+        low, high = (np.array(side) for side in zip(*corners, strict=True))
+        shared = low.min(axis=0), high.max(axis=0)
     else:
         sizes = [high - low for low, high in (window(view, oblique(view)) for view in views)]
     for index, (title, view) in enumerate(zip(titles, views, strict=True)):

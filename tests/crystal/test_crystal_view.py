@@ -27,6 +27,7 @@ from planners.view.crystal_tables import candidates_rows, candidates_table
 from planners.view.figures_crystal import draw_cell, picture_of_cell
 from planners.view.figures_crystal_candidates import picture_of_candidates
 from planners.view.figures_crystal_trends import Trend, draw_trends, picture_of_trends
+from planners.view.ray_image import NOBODY
 
 NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
 
@@ -110,7 +111,8 @@ def test_overlaps_are_there_where_an_arrangement_is_not_free(name):
 def test_parts_that_may_overlap_do_not_count():
     model, q = target_of("rabbit-p1")
     face, ear, _ = model.molecule.bodies(q)
-    assert face.contains(ear.centre + 0.0) or face.support(ear.centre) > 0.0
+    grown = Ellipsoid(face.centre, face.rotation, 1.0001 * face.semi_axes)
+    assert grown.contains(ear.centre)
     assert overlaps(model, copies(model, q, *_home(model, q))) == []
 
 
@@ -120,9 +122,9 @@ def _home(model, q):
 
 
 def test_planar_figures_have_an_ellipse_for_each_body_and_yellow_for_each_overlap():
-    for group, q_of in (("p1", lambda m: target_of("rabbit-plane")[1]), ("p1", colliding)):
-        model = in_group("rabbit-plane", group, [6.75, 9])
-        cell = drawn_cell(model, q_of(model), (2, 3))
+    model, target = target_of("rabbit-plane")
+    for q in (target, colliding(model)):
+        cell = drawn_cell(model, q, (2, 3))
         axes = draw_cell(cell).axes[0]
         drawn = [patch for patch in axes.patches if isinstance(patch, EllipsePatch)]
         assert len(drawn) == 3 * 6
@@ -136,11 +138,12 @@ def test_planar_figures_have_an_ellipse_for_each_body_and_yellow_for_each_overla
 
 
 def test_plane_groups_have_a_colour_for_each_operation():
-    model = in_group("rabbit-plane", "p6", [30, 30], 120)
+    model = in_group("rabbit-plane", "p6", [30, 30], [120])
     cell = drawn_cell(model, target_of("rabbit-plane")[1], (1, 1))
     axes = draw_cell(cell).axes[0]
-    faces = {patch.get_facecolor()[:3] for patch in axes.patches[-18:]}
-    assert {tuple(rgb(hue)) for hue in cell.hues} <= {tuple(face) for face in faces}
+    drawn = [patch for patch in axes.patches if isinstance(patch, EllipsePatch)]
+    faces = {patch.get_facecolor()[:3] for patch in drawn}
+    assert {rgb(hue) for hue in cell.hues} <= faces
     assert len(set(palette.operation_colours(192))) == 192
     assert palette.OVERLAP not in palette.operation_colours(192)
 
@@ -156,7 +159,7 @@ def test_spatial_views_show_bodies_where_they_project():
         tops = [(camera.axes(body.support_points(camera.back)[None])[0], i) for i, body in bodies]
         nearest, owner = max(tops, key=lambda top: top[0][2])
         column, row = ((nearest[:2] - low) / image.spacing).astype(int)
-        assert image.owners[row, column] == owner
+        assert image.owners[row, column] in {owner, NOBODY}  # or an edge of the cell
         for point, _ in tops:
             column, row = ((point[:2] - low) / image.spacing).astype(int)
             assert image.depths[row, column] > point[2] - 0.01 * (high - low).max()
@@ -234,7 +237,7 @@ def test_the_page_holds_all_bodies():
         placed = {
             tuple(np.round(np.array(c["matrix"]).reshape(4, 4).T[: model.dimension, 3], 5))
             for c in commands
-            if c["type"] == "set_transform" and c["path"].count("/") > 4
+            if c["type"] == "set_transform" and c["path"].count("/") > 3
         }
         expected = {tuple(np.round(b.centre, 5)) for c in cell.copies for b in c.bodies}
         assert placed == expected

@@ -78,7 +78,8 @@ def overlaps(
 ) -> list[Overlap]:
     """All overlaps of the chosen copies with each other and with other ones.
 
-    Parts of one molecule that are joined, or are allowed to overlap, do not count.
+    Parts of one molecule that are joined, or are allowed to overlap, do not count, and neither do
+    overlaps that are no deeper than the model allows.
     """
     from ellipsoid_planning.crystal.collisions import watched_pairs
 
@@ -87,7 +88,12 @@ def overlaps(
     owner, part = np.divmod(pairs, len(model.parts))
     watched = {frozenset(pair) for pair in watched_pairs(model)}
     own = [frozenset(row) in watched for row in part.tolist()]
-    return _meeting(bodies, pairs[(owner[:, 0] != owner[:, 1]) | np.array(own, dtype=bool)])
+    found = _meeting(bodies, pairs[(owner[:, 0] != owner[:, 1]) | np.array(own, dtype=bool)])
+    if model.overlap == 0.0:
+        return found
+    from ellipsoid_planning.geometry.dual import gap
+
+    return [one for one in found if gap(one.first, one.second).value <= model.required]
 
 
 def _near_pairs(bodies: Sequence[Ellipsoid], first: int) -> NDArray[np.int64]:

@@ -134,7 +134,10 @@ class DrawnCell:
         names = "abc"[: cell.dimension]
         lengths = ", ".join(f"{n} = {v:.5g}" for n, v in zip(names, cell.lengths, strict=True))
         angles = _angles(cell.angles_deg)
-        free = "free of overlaps" if self.model.is_free(self.configuration) else "with overlaps"
+        free = "free of" if self.model.is_free(self.configuration) else "with"
+        free += " overlaps"
+        if self.model.overlap > 0.0:
+            free += f" deeper than {self.model.overlap:.3g}"
         return f"{pretty_group(self.model)}  ·  {lengths}{angles}  ·  {free}"
 
 

@@ -88,6 +88,22 @@ def candidates_table(
     return table
 
 
+def error_columns(
+    model: PackingModel, configurations: ArrayLike, target: ArrayLike
+) -> dict[str, list[float]]:
+    """E_h, MAE, E_max and, where the molecule shifts, MAE₂ of candidates (m, K), by title."""
+    from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
+
+    found = [arrangement_errors(model, one, target) for one in np.asarray(configurations)]
+    columns = {
+        "E_h": [one.motion for one in found],
+        "MAE [°]": [one.mae_deg for one in found],
+        "E_max [°]": [one.e_max_deg for one in found],
+    }
+    shifts = [one.mean_shift for one in found if one.mean_shift is not None]
+    return {**columns, "MAE₂": shifts} if len(shifts) == len(found) else columns
+
+
 def checked_candidates(
     model: PackingModel, configurations: ArrayLike, costs: ArrayLike
 ) -> tuple[Array, Array]:

@@ -18,15 +18,24 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ellipsoid_planning.crystal.trace import Trend
+
     Array = NDArray[np.float64]
 
 PANEL = (4.0, 3.4)  # [inches]
 HUES = (colours.ROBOT, colours.GOAL, colours.START, "#aa4499")
+ERRORS = (
+    ("E_h", "", "motion"),
+    ("MAE", "°", "mae_deg"),
+    ("E_max", "°", "e_max_deg"),
+    ("MAE₂", "", "mean_shift"),
+)
+MANY_STEPS = 100  # more are drawn on a logarithmic scale
 FEW = 12  # trials that have a thin line each
 
 
 @dataclass(frozen=True, eq=False)
-class Trend:
+class ErrorTrend:
     """One error over the steps of many trials.
 
     Attributes:
@@ -42,7 +51,9 @@ class Trend:
     values: Array
 
     @classmethod
-    def of(cls, name: str, unit: str, histories: Iterable[tuple[ArrayLike, ArrayLike]]) -> Trend:
+    def of(
+        cls, name: str, unit: str, histories: Iterable[tuple[ArrayLike, ArrayLike]]
+    ) -> ErrorTrend:
         """The trend of trials with steps of their own: each is its steps and its errors there.
 
         An error holds until the next step that is given.
@@ -73,7 +84,26 @@ class Trend:
         return np.take_along_axis(values, np.maximum.accumulate(known, axis=1), axis=1)
 
 
-def picture_of_trends(trends: Sequence[Trend], suffix: str, title: str = "") -> bytes:
+def trends_of(refinements: Sequence[Trend]) -> list[ErrorTrend]:
+    """FCF and, where the target is known, E_h, MAE, E_max and MAE₂ of many refinements.
+
+    Raises:
+        CrystalError: if there is no refinement, or one of no step.
+    """
+    if not refinements or not all(len(one.steps) for one in refinements):
+        raise CrystalError("expected one refinement or more, each of one step or more, to draw")
+    found = [ErrorTrend.of("FCF", "", [(one.steps, one.costs) for one in refinements])]
+    if not all(one.errors for one in refinements):
+        return found
+    for name, unit, key in ERRORS:
+        rows = [[getattr(error, key) for error in one.errors] for one in refinements]
+        if all(value is not None for row in rows for value in row):
+            histories = [(one.steps, row) for one, row in zip(refinements, rows, strict=True)]
+            found.append(ErrorTrend.of(name, unit, histories))
+    return found
+
+
+def picture_of_trends(trends: Sequence[ErrorTrend], suffix: str, title: str = "") -> bytes:
     """Draw the median and the spread of errors over steps, a panel each, as a picture's bytes.
 
     Raises:
@@ -82,7 +112,7 @@ def picture_of_trends(trends: Sequence[Trend], suffix: str, title: str = "") -> 
     return saved(draw_trends(trends, title), suffix)
 
 
-def draw_trends(trends: Sequence[Trend], title: str = "") -> Figure:
+def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
     """Return the matplotlib figure."""
     from matplotlib.figure import Figure
 
@@ -104,7 +134,7 @@ def draw_trends(trends: Sequence[Trend], title: str = "") -> Figure:
     return drawn
 
 
-def _draw_trend(axes: Axes, trend: Trend, hue: str) -> None:
+def _draw_trend(axes: Axes, trend: ErrorTrend, hue: str) -> None:
     values, steps = trend.filled(), trend.steps
     low, first, middle, third, high = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0], axis=0)
     if len(values) > 1:
@@ -123,6 +153,8 @@ def _draw_trend(axes: Axes, trend: Trend, hue: str) -> None:
     axes.set_title(f"{trend.name}{unit}", loc="left", fontsize=10)
     axes.set_ylim(0.0, 1.08 * max(float(high.max()), 1e-12))
     axes.set_xlim(steps[0], steps[-1] if len(steps) > 1 else steps[0] + 1.0)
+    if steps[-1] > MANY_STEPS:
+        axes.set_xscale("symlog", linthresh=1.0)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)

@@ -1,6 +1,7 @@
 """What is drawn of a crystal is what is there."""
 
 import base64
+import dataclasses
 import itertools
 import json
 import re
@@ -15,6 +16,7 @@ from ellipsoid_planning.crystal.copies import copies, middle_of
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.model_build import model_of
 from ellipsoid_planning.crystal.overlaps import overlaps
+from ellipsoid_planning.crystal.trace import Trace, trend
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.scenario_origin import Origin
@@ -23,10 +25,15 @@ from planners.view.colours import rgb
 from planners.view.crystal_cell import drawn_cell, pretty_group
 from planners.view.crystal_page import MOLECULE, page_of_cell
 from planners.view.crystal_space import along, oblique, rendered, window
-from planners.view.crystal_tables import candidates_rows, candidates_table
+from planners.view.crystal_tables import candidates_rows, candidates_table, error_columns
 from planners.view.figures_crystal import draw_cell, picture_of_cell
 from planners.view.figures_crystal_candidates import picture_of_candidates
-from planners.view.figures_crystal_trends import Trend, draw_trends, picture_of_trends
+from planners.view.figures_crystal_trends import (
+    ErrorTrend,
+    draw_trends,
+    picture_of_trends,
+    trends_of,
+)
 from planners.view.ray_image import NOBODY
 
 NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
@@ -203,7 +210,7 @@ def test_formats(suffix):
     first = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
     model, q = target_of("rabbit-plane")
     errors = {"MAE [°]": [1.0, 2.0]}
-    trend = Trend.of("MAE", "°", [([0, 5], [3.0, 1.0]), ([0, 2], [4.0, 2.0])])
+    trend = ErrorTrend.of("MAE", "°", [([0, 5], [3.0, 1.0]), ([0, 2], [4.0, 2.0])])
     for content in (
         picture_of_cell(model, q, suffix),
         picture_of_candidates(model, [q, q + 0.1], [0.1, 0.2], suffix, q, errors, shown=2),
@@ -280,18 +287,46 @@ def test_candidates_are_listed_with_their_target():
 
 
 def test_trends_keep_the_last_error_of_trials_that_stopped():
-    trend = Trend.of("MAE", "°", [([0, 4], [8.0, 4.0]), ([0, 1, 2], [6.0, 5.0, 1.0])])
+    trend = ErrorTrend.of("MAE", "°", [([0, 4], [8.0, 4.0]), ([0, 1, 2], [6.0, 5.0, 1.0])])
     np.testing.assert_array_equal(trend.steps, [0, 1, 2, 4])
     np.testing.assert_array_equal(trend.values, [[8, 8, 8, 4], [6, 5, 1, 1]])
-    stopped = Trend("E_h", "", np.arange(3), np.array([[3.0, 2.0, np.nan], [5.0, np.nan, np.nan]]))
+    stopped = ErrorTrend(
+        "E_h", "", np.arange(3), np.array([[3.0, 2.0, np.nan], [5.0, np.nan, np.nan]])
+    )
     np.testing.assert_array_equal(stopped.filled(), [[3, 2, 2], [5, 5, 5]])
     (axes,) = draw_trends([trend]).axes
     median = next(line for line in axes.lines if line.get_label() == "median")
     np.testing.assert_allclose(median.get_ydata(), [7.0, 6.5, 4.5, 2.5])
     with pytest.raises(CrystalError, match="first step"):
-        Trend("E_h", "", np.arange(2), np.array([[np.nan, 1.0]])).filled()
+        ErrorTrend("E_h", "", np.arange(2), np.array([[np.nan, 1.0]])).filled()
     with pytest.raises(CrystalError, match="at least one"):
         draw_trends([])
+
+
+def test_refinements_become_trends():
+    model, q = target_of("rabbit-p212121")
+    trace = Trace()
+    for shift, cost in ((0.3, 3.0), (0.4, 4.0), (0.1, 1.0)):
+        trace.add(q + shift, cost)
+    drawn = trends_of([trend(trace, model, q)])
+    assert [one.name for one in drawn] == ["FCF", "E_h", "MAE", "E_max", "MAE₂"]
+    np.testing.assert_array_equal(drawn[0].steps, [0, 2])
+    np.testing.assert_allclose(drawn[0].values, [[3.0, 1.0]])
+    np.testing.assert_allclose(drawn[4].values, [[0.3, 0.1]], rtol=1e-6)
+    columns = error_columns(model, [q, q + 0.1], q)
+    assert list(columns) == ["E_h", "MAE [°]", "E_max [°]", "MAE₂"]
+    assert columns["MAE [°]"][0] < 1e-6 < columns["MAE [°]"][1] < np.degrees(0.1) + 1e-6
+    assert [one.name for one in trends_of([trend(trace, model)])] == ["FCF"]
+    with pytest.raises(CrystalError, match="one refinement"):
+        trends_of([])
+
+
+def test_soft_bodies_may_overlap_as_deep_as_the_model_says():
+    model, _ = target_of("rabbit-plane")
+    q = colliding(model)
+    soft = dataclasses.replace(model, overlap=3.0)
+    assert soft.is_free(q) and not drawn_cell(soft, q).overlaps
+    assert "free of overlaps deeper than 3" in drawn_cell(soft, q).headline()
 
 
 def test_bad_cells_are_refused():

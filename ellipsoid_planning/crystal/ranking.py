@@ -147,8 +147,8 @@ class Ranker:
         grid, molecule = self.search.model.grid, self.search.model.molecule
         values = [r.values for r in grid.ranges[: grid.shift_count]]
         spots = self.cost.structure.table[0]
-        rows = [np.zeros((0, len(spots)))]
-        rows += [np.outer(v, spots @ axis) for v, axis in zip(values, molecule.axes, strict=False)]
+        rows = [np.zeros((0, spots.shape[1]))]
+        rows += [np.outer(v, axis @ spots) for v, axis in zip(values, molecule.axes, strict=False)]
         counts = np.array([len(v) for v in values], dtype=np.int64)
         return counts, np.exp(2j * np.pi * np.vstack(rows))
 

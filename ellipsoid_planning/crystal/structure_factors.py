@@ -83,12 +83,10 @@ class StructureFactors:
     @cached_property
     def table(self) -> tuple[NDArray[np.generic], ...]:
         """Spots and terms for kernels.structure_factors."""
-        indices, firsts, spots, signs, coefficients = _terms(
-            self.model.group, self.reflections.indices
-        )
-        vectors = np.zeros((len(indices), 3))
-        vectors[:, : self.model.dimension] = indices @ self.model.cell.reciprocal.T
-        return vectors, firsts, spots, signs, coefficients
+        indices, firsts, spots, terms = _terms(self.model.group, self.reflections.indices)
+        vectors = np.zeros((3, len(indices)))
+        vectors[: self.model.dimension] = self.model.cell.reciprocal @ indices.T
+        return vectors, firsts, spots, terms
 
     @cached_property
     def carried(self) -> NDArray[np.bool_]:
@@ -104,9 +102,9 @@ class StructureFactors:
     def factors(self, configurations: ArrayLike) -> Complex:
         """Structure factors (m, R) of configurations (m, K)."""
         values = self.checked(configurations)
-        factors = np.empty((len(values), len(self.reflections)), np.complex128)
-        kernels.structure_factors(self.molecule, self.planar, values, self.table, factors)
-        return factors
+        parts = np.empty((len(values), 2, len(self.reflections)))
+        kernels.structure_factors(self.molecule, self.planar, values, self.table, parts)
+        return parts[:, 0] + 1j * parts[:, 1]
 
     def magnitudes(self, configurations: ArrayLike) -> Array:
         """Their magnitudes |F|, (m, R)."""
@@ -115,12 +113,12 @@ class StructureFactors:
     def factors_and_rates(self, configuration: ArrayLike) -> tuple[Complex, Complex]:
         """Structure factors (R,) of a configuration (K,), and their derivatives (R, K)."""
         values = self.checked(np.asarray(configuration, dtype=float)[None])[0]
-        factors = np.empty(len(self.reflections), np.complex128)
-        rates = np.empty((len(self.reflections), len(values)), np.complex128)
+        factors = np.empty((2, len(self.reflections)))
+        rates = np.empty((len(values), 2, len(self.reflections)))
         kernels.factors_and_rates(
             self.molecule, self.carried, self.planar, values, self.table, factors, rates
         )
-        return factors, rates
+        return factors[0] + 1j * factors[1], (rates[:, 0] + 1j * rates[:, 1]).T
 
     def magnitudes_and_rates(self, configuration: ArrayLike) -> tuple[Array, Array]:
         """Magnitudes (R,) of a configuration (K,), and their derivatives (R, K).
@@ -154,10 +152,8 @@ def _sizes(factors: Complex) -> Array:
     return np.sqrt(factors.real**2 + factors.imag**2)
 
 
-def _terms(
-    group: SpaceGroup, indices: Integers
-) -> tuple[Integers, Integers, Integers, Array, Complex]:
-    """Spots (S, n), firsts, and the terms' spots, signs and coefficients."""
+def _terms(group: SpaceGroup, indices: Integers) -> tuple[Integers, Integers, Integers, Array]:
+    """Spots (S, n), and firsts, term_spots and terms for kernels.structure_factors."""
     turned = np.einsum("rn,gnm->rgm", indices, group.integer_rotations)
     signs = friedel_signs(turned.reshape(-1, indices.shape[1])).reshape(turned.shape[:2])
     whole = (turned * signs[:, :, None]).reshape(-1, indices.shape[1])
@@ -172,8 +168,10 @@ def _terms(
     np.add.at(coefficients, merged.ravel(), phases.ravel())
     terms = terms[kept := np.abs(coefficients) > CANCELLED]
     firsts = np.searchsorted(terms[:, 0], np.arange(len(indices) + 1))
-    ends = (np.ascontiguousarray(terms[:, 1]), -terms[:, 2].astype(float))
-    return spots, firsts.astype(np.int64), *ends, coefficients[kept]
+    real, imaginary = coefficients[kept].real, coefficients[kept].imag
+    signs = -terms[:, 2]  # -1 for the conjugate of M
+    matrices = np.array([real, -signs * imaginary, imaginary, signs * real])
+    return spots, firsts.astype(np.int64), np.ascontiguousarray(terms[:, 1]), matrices
 
 
 def roots_of_unity(order: int) -> Complex:

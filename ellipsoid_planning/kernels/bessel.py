@@ -7,16 +7,30 @@ Bessel functions: Chebyshev series in w² up to w = 8, beyond it Hankel's form
 J_n(w) = √(2/πw) (P_n cos χ − Q_n sin χ), χ = w − (2n + 1)π/4, with P_n and w Q_n as Chebyshev
 series in (8/w)²; coefficients computed with 40 digits. The error is about 1e-15 of the largest
 value of J_n up to w = 8, and of the envelope √(2/πw) beyond.
+
+Nothing branches, so that loops over many w are vectorised.
 """
 
 import math
 
 import numpy as np
 
-from .compile import kernel
+from .compile import inlined
+from .sines import sine_cosine
 
 NEAR = 8.0  # up to here the series in w²
 SERIES = 2.0  # up to here the ball's power series, which loses no digits
+
+
+def _spherical(n: int) -> np.ndarray:
+    """Coefficients of j_n(w)/wⁿ in w²; at `SERIES` the first one left out is below 1e-18."""
+    terms = [1.0 / math.prod(range(1, 2 * n + 2, 2))]
+    for k in range(1, 13):
+        terms.append(-terms[-1] / (2.0 * k * (2.0 * (n + k) + 1.0)))
+    return np.array(terms)
+
+
+BALL, BALL_SLOPE = _spherical(1), _spherical(2)
 
 # J₁(w)/w and J₂(w)/w² as series in w²/32 − 1; P_n and w Q_n as series in 2 (8/w)² − 1.
 
@@ -138,7 +152,7 @@ Q_2 = np.array(
 )
 
 
-@kernel
+@inlined
 def chebyshev(coefficients, y):
     """The sum of coefficient · T_k(y) by Clenshaw's recurrence."""
     first = second = 0.0
@@ -147,55 +161,59 @@ def chebyshev(coefficients, y):
     return y * first - second + coefficients[0]
 
 
-@kernel
+@inlined
 def disc(w):
     """The transform of the unit disc, 2π J₁(w)/w, for w ≥ 0."""
-    if w <= NEAR:
-        return 2.0 * math.pi * chebyshev(NEAR_1, w * w / 32.0 - 1.0)
-    y = 2.0 * (NEAR / w) ** 2 - 1.0
-    s, c = math.sin(w), math.cos(w)
+    inner = min(w, NEAR)
+    outer = max(w, NEAR)
+    near = chebyshev(NEAR_1, inner * inner / 32.0 - 1.0)
+    y = 2.0 * (NEAR / outer) ** 2 - 1.0
+    s, c = sine_cosine(outer)
     # √2 cos χ = s − c and √2 sin χ = −s − c.
-    value = chebyshev(P_1, y) * (s - c) + chebyshev(Q_1, y) / w * (s + c)
-    return 2.0 * math.pi * value / (math.sqrt(math.pi * w) * w)
+    far = chebyshev(P_1, y) * (s - c) + chebyshev(Q_1, y) / outer * (s + c)
+    far /= math.sqrt(math.pi * outer) * outer
+    return 2.0 * math.pi * (near if w <= NEAR else far)
 
 
-@kernel
+@inlined
 def disc_slope(w):
     """The derivative of `disc` over w, −2π J₂(w)/w²."""
-    if w <= NEAR:
-        return -2.0 * math.pi * chebyshev(NEAR_2, w * w / 32.0 - 1.0)
-    y = 2.0 * (NEAR / w) ** 2 - 1.0
-    s, c = math.sin(w), math.cos(w)
+    inner = min(w, NEAR)
+    outer = max(w, NEAR)
+    near = chebyshev(NEAR_2, inner * inner / 32.0 - 1.0)
+    y = 2.0 * (NEAR / outer) ** 2 - 1.0
+    s, c = sine_cosine(outer)
     # √2 cos χ = −s − c and √2 sin χ = c − s.
-    value = -chebyshev(P_2, y) * (s + c) - chebyshev(Q_2, y) / w * (c - s)
-    return -2.0 * math.pi * value / (math.sqrt(math.pi * w) * w * w)
+    far = -chebyshev(P_2, y) * (s + c) - chebyshev(Q_2, y) / outer * (c - s)
+    far /= math.sqrt(math.pi * outer) * outer * outer
+    return -2.0 * math.pi * (near if w <= NEAR else far)
 
 
-@kernel
+@inlined
 def ball(w):
     """The transform of the unit ball, 4π (sin w − w cos w)/w³, for w ≥ 0."""
-    if w < SERIES:
-        return 4.0 * math.pi * spherical(1, w * w)
-    return 4.0 * math.pi * (math.sin(w) - w * math.cos(w)) / (w * w * w)
+    near = horner(BALL, min(w, SERIES) ** 2)
+    outer = max(w, SERIES)
+    s, c = sine_cosine(outer)
+    far = (s - outer * c) / (outer * outer * outer)
+    return 4.0 * math.pi * (near if w < SERIES else far)
 
 
-@kernel
+@inlined
 def ball_slope(w):
     """The derivative of `ball` over w, −4π j₂(w)/w²."""
-    if w < SERIES:
-        return -4.0 * math.pi * spherical(2, w * w)
-    s, c = math.sin(w), math.cos(w)
-    return -4.0 * math.pi * ((3.0 - w * w) * s - 3.0 * w * c) / (w * w * w * w * w)
+    near = horner(BALL_SLOPE, min(w, SERIES) ** 2)
+    outer = max(w, SERIES)
+    square = outer * outer
+    s, c = sine_cosine(outer)
+    far = ((3.0 - square) * s - 3.0 * outer * c) / (square * square * outer)
+    return -4.0 * math.pi * (near if w < SERIES else far)
 
 
-@kernel
-def spherical(n, square):
-    """j_n(w)/wⁿ for w² = ``square``: its power series, for w up to `SERIES`."""
-    term = 1.0 / 3.0 if n == 1 else 1.0 / 15.0
-    total = 0.0
-    k = 0.0
-    while abs(term) > 1e-18:
-        total += term
-        k += 1.0
-        term *= -square / (2.0 * k * (2.0 * (n + k) + 1.0))
+@inlined
+def horner(coefficients, x):
+    """The sum of coefficient · xᵏ."""
+    total = coefficients[coefficients.size - 1]
+    for k in range(coefficients.size - 2, -1, -1):
+        total = total * x + coefficients[k]
     return total

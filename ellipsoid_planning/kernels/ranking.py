@@ -57,7 +57,7 @@ def rank_arrangements(
     """
     target, weights, scaled, quantum = data
     shift_counts, shift_waves = waves
-    spot_count, count = table[0].shape[0], target.size
+    spot_count, count = table[0].shape[1], target.size
     limb_count, joints = strides.shape
     combinations = 1
     for c in range(joints):
@@ -67,12 +67,11 @@ def rank_arrangements(
         shifts *= shift_counts[c]
     frame = np.empty((1, FRAME))
     posed = np.empty((parts.shape[0], POSED))
-    turned = np.empty((placements.shape[0], spot_count), np.complex128)
+    turned = np.empty((placements.shape[0], 2, spot_count))
     turned_for = np.full(placements.shape[0], NOTHING)
-    shifted = np.empty(spot_count, np.complex128)
-    wave = np.empty(spot_count, np.complex128)
-    real = np.empty((placements.shape[0], count))
-    imaginary = np.empty((placements.shape[0], count))
+    shifted = np.empty((2, spot_count))
+    wave = np.empty((2, spot_count))
+    factors = np.empty((placements.shape[0], 2, count))
     ready_for = np.full(placements.shape[0], NOTHING)
     sums = np.zeros((limb_count + 1, 2, count))
     rows = np.full(limb_count, NOTHING)
@@ -103,13 +102,13 @@ def rank_arrangements(
                         pose_part(frame, 0, parts, p, posed, p)
                     spot_amplitudes(posed, first, last, sizes, planar, table[0], turned[row])
                 for s in range(spot_count):
-                    shifted[s] = turned[row, s] * wave[s]
-                for r in range(count):
-                    factor = combine(table, r, shifted)
-                    real[row, r], imaginary[row, r] = factor.real, factor.imag
+                    a, b, c, d = turned[row, 0, s], turned[row, 1, s], wave[0, s], wave[1, s]
+                    shifted[0, s] = a * c - b * d
+                    shifted[1, s] = a * d + b * c
+                combine(table, shifted, factors[row])
             for r in range(count):
-                sums[limb + 1, 0, r] = sums[limb, 0, r] + real[row, r]
-                sums[limb + 1, 1, r] = sums[limb, 1, r] + imaginary[row, r]
+                sums[limb + 1, 0, r] = sums[limb, 0, r] + factors[row, 0, r]
+                sums[limb + 1, 1, r] = sums[limb, 1, r] + factors[row, 1, r]
         worst = best[1][best[1].size - 1]
         limit = math.inf if worst == NOTHING else ((worst + 1.0) * quantum) ** 2
         total = squares(sums[limb_count], target, weights, scaled, limit, magnitudes)
@@ -129,16 +128,18 @@ def limb_row(number, limb, limbs, strides, counts):
 
 @kernel
 def shift_wave(number, counts, waves, wave):
-    """Fill ``wave`` (S,) with exp(2πi s·x) for the base's shift by number."""
-    for s in range(wave.size):
-        wave[s] = 1.0
+    """Fill ``wave`` (2, S) with exp(2πi s·x) for the base's shift by number."""
+    wave[0, :] = 1.0
+    wave[1, :] = 0.0
     row = waves.shape[0]
     for c in range(counts.size - 1, -1, -1):
         row -= counts[c]
         at = row + number % counts[c]
         number //= counts[c]
-        for s in range(wave.size):
-            wave[s] *= waves[at, s]
+        for s in range(wave.shape[1]):
+            a, b, other = wave[0, s], wave[1, s], waves[at, s]
+            wave[0, s] = a * other.real - b * other.imag
+            wave[1, s] = a * other.imag + b * other.real
 
 
 @kernel

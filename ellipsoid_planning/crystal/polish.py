@@ -11,6 +11,7 @@ from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.crystal.trace import Trace
 from ellipsoid_planning.errors import CrystalError
+from ellipsoid_planning.kernels import molecule as kernels
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,8 @@ STEP, GAIN = 1e-13, 1e-8
 HALVINGS = 30
 # What a range of no width (a coordinate that the search holds fixed) may move: nothing, nearly.
 FIXED = 1e-12
+# Sines of the angle between two axes below this are not divided by.
+POLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +64,7 @@ def polish(
     from scipy.optimize import least_squares
 
     first = np.array(start, dtype=float)
-    sizes = np.maximum(checked_reach(cost.model, reach), FIXED)
+    sizes = np.maximum(checked_reach(cost.model, reach, first), FIXED)
     task = _Task(cost)
     found = least_squares(
         task.residuals,
@@ -77,19 +80,38 @@ def polish(
     return _freed(cost, np.asarray(found.x, dtype=float), task.trace)
 
 
-def neighbourhood(model: PackingModel, steps: float = 2.0) -> Array:
-    """(K,), so many steps of the model's grid; for coordinates it holds fixed, nothing."""
-    return np.array([steps * one.step for one in model.grid.ranges])
+def neighbourhood(
+    model: PackingModel, steps: float = 2.0, around: ArrayLike | None = None
+) -> Array:
+    """(K,), so many steps of the model's grid; for coordinates it holds fixed, nothing.
+
+    Near the pole of Euler angles (``around`` (K,) tells) a small rotation can need large first and
+    third angles: these may go farther there, up to half a turn.
+    """
+    reach = np.array([steps * one.step for one in model.grid.ranges])
+    first, last = model.grid.shift_count, model.grid.base_count - 1
+    if around is None or last - first != 2:
+        return reach
+    molecule = model.molecule
+    frames = molecule.frames(around)
+    lines = np.empty((len(frames), 6))
+    kernels.motion_axes(molecule.axes, frames, lines)
+    sine = float(np.linalg.norm(np.cross(lines[first, :3], lines[last, :3])))
+    for k in (first, last):
+        reach[k] = min(reach[k] / max(sine, POLE), max(reach[k], np.pi))
+    return reach
 
 
-def checked_reach(model: PackingModel, reach: ArrayLike | None) -> Array:
+def checked_reach(
+    model: PackingModel, reach: ArrayLike | None, around: ArrayLike | None = None
+) -> Array:
     """A reach (K,) of coordinates, two grid steps if None.
 
     Raises:
         CrystalError: if its size is wrong, or a number negative or not finite.
     """
     if reach is None:
-        return neighbourhood(model)
+        return neighbourhood(model, around=around)
     given = np.array(reach, dtype=float)
     size = (len(model.grid.ranges),)
     if given.shape != size or not np.all((given >= 0.0) & np.isfinite(given)):

@@ -68,7 +68,7 @@ class _Task:
     def __init__(self, cost: FourierCost, start: Array, parameters: Refinement) -> None:
         self._cost, self._parameters = cost, parameters
         self._threshold = parameters.cost_share * cost.norm
-        self._reach = neighbourhood(cost.model, parameters.reach)
+        self._reach = neighbourhood(cost.model, parameters.reach, start)
         self._start_is_free = cost.model.is_free(start)
         self._start = start
         self.best, self.lowest = start, cost.value(start)

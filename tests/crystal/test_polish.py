@@ -95,3 +95,16 @@ def test_a_trend_has_the_improvements_and_their_errors():
     assert found.to_dict()["errors"][2]["MAE_deg"] == pytest.approx(expected[2])
     assert trend(trace, model).errors == ()
     assert trend(Trace(), model, target).to_dict() == {"steps": [], "costs": [], "errors": []}
+
+
+def test_near_the_pole_of_euler_angles_the_outer_ones_may_go_farther():
+    model, *_ = case("rabbit-p212121")
+    plain = neighbourhood(model, 1.0)
+    pole = np.zeros(10)
+    assert neighbourhood(model, 1.0, pole)[[3, 5]] == pytest.approx([np.pi, np.pi])
+    tilted = pole + np.radians(30.0) * np.eye(10)[4]
+    reach = neighbourhood(model, 1.0, tilted)
+    assert reach[[3, 5]] == pytest.approx(2.0 * plain[[3, 5]])
+    assert np.delete(reach, [3, 5]) == pytest.approx(np.delete(plain, [3, 5]))
+    flat = load_model("rabbit-plane")
+    assert neighbourhood(flat, 1.0, np.zeros(3)) == pytest.approx(neighbourhood(flat, 1.0))

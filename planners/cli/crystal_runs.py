@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
@@ -132,6 +133,7 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
     with _executor(workplace.cluster, workplace.jobs) as execute:
         if store is not None:
             store.open(settings())
+        before = signal.getsignal(signal.SIGINT)
         try:
             yield Session(execute, store, note_interrupts(twice_ends=True))
         except KeyboardInterrupt:
@@ -139,6 +141,8 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
             nothing = "Nothing is kept; name a folder by --run to be able to go on."
             say(f"Interrupted. {nothing if store is None else kept}")
             raise typer.Exit(INTERRUPTED) from None
+        finally:
+            signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

@@ -114,7 +114,7 @@ def run_on_workers(
         stopped: asked all the time.
         begins: told of each task that is handed to a worker.
         lost: what to give for a task that has lost ``MOST_LOSSES`` workers; it may raise.
-        each_thread: give a worker as many tasks at a time as it has threads; otherwise one.
+        each_thread: keep all threads of each worker busy; otherwise a worker has one task.
 
     Raises:
         ClusterError: the scheduler or all workers are gone, or a worker cannot run our code.
@@ -164,7 +164,8 @@ class _Dispatch(Generic[T, R]):
                 yield from self._lost(task)
         busy = Counter(worker for worker, _, _ in self._running.values())
         for worker, threads in present.items():
-            for _ in range((threads if self._each_thread else 1) - busy[worker]):
+            # One more than threads, so that none of them waits for this loop.
+            for _ in range((threads + 1 if self._each_thread else 1) - busy[worker]):
                 if self._waiting:
                     self._submit(worker, self._waiting.pop())
 

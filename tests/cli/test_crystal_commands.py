@@ -91,7 +91,7 @@ def test_pack_writes_all_arrangements(suffix, tmp_path):
 def test_a_killed_run_goes_on_and_a_changed_model_is_refused(tmp_path, monkeypatch):
     model = tmp_path / "model.yaml"
     whole = bundled_models()["rabbit-p212121"].read_text(encoding="utf-8")
-    fine = whole.replace("upper: 4", "upper: 1")
+    fine = whole.replace("upper: 3", "upper: 1")
     model.write_text(fine, encoding="utf-8")
     arguments = ("crystal", "pack", "model.yaml", "--run", "run", "--jobs", "1", "--json")
     pieces = tmp_path / "run" / "search"
@@ -130,7 +130,7 @@ def test_a_killed_run_goes_on_and_a_changed_model_is_refused(tmp_path, monkeypat
 CELL = "group: P1\ncell: {lengths: [14, 14, 14]}"
 BAD = {
     "unknown group": ("group: P1", "group: P212122", ("group", "P212122")),
-    "wrong cell": (CELL, CELL.replace("P1", "P4").replace("14]", "15]"), ("cell", "P4")),
+    "wrong cell": (CELL, CELL.replace("P1", "P4").replace("[14, 14", "[20, 24"), ("cell", "P4")),
     "too large": ("{lengths: [14, 14, 14]", "{lengths: [10, 10, 10]", ("cell", "do not fit")),
     "unknown key": ("parts:", "prats:", ("did you mean 'parts'",)),
 }

@@ -30,7 +30,7 @@ ERRORS = (
     ("E_max", "°", "e_max_deg"),
     ("MAE₂", "", "mean_shift"),
 )
-MANY_STEPS = 100  # more are drawn on a logarithmic scale
+VANISHES = 1e-9  # as a part of the largest
 FEW = 12  # trials that have a thin line each
 
 
@@ -118,13 +118,15 @@ def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
 
     if not trends:
         raise CrystalError("expected at least one error to draw over the steps, got none")
-    width = max(PANEL[0] * len(trends), 5.0)
-    drawn = Figure(figsize=(width, PANEL[1] + 0.7), layout="constrained")
+    columns = 2 if len(trends) == 4 else min(len(trends), 3)
+    rows = -(-len(trends) // columns)
+    size = max(PANEL[0] * columns, 5.0), PANEL[1] * rows + 0.7
+    drawn = Figure(figsize=size, layout="constrained")
     count = len(trends[0].values)
     trials = f"{count} trial{'s' if count != 1 else ''}"
     drawn.suptitle(f"{title}: {trials}" if title else trials, fontsize=12, fontweight="bold")
     for index, trend in enumerate(trends):
-        axes = drawn.add_subplot(1, len(trends), index + 1)
+        axes = drawn.add_subplot(rows, columns, index + 1)
         _draw_trend(axes, trend, HUES[index % len(HUES)])
         axes.set_xlabel("steps", fontsize=9)
     handles, labels = drawn.axes[0].get_legend_handles_labels()
@@ -137,24 +139,21 @@ def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
 def _draw_trend(axes: Axes, trend: ErrorTrend, hue: str) -> None:
     values, steps = trend.filled(), trend.steps
     low, first, middle, third, high = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0], axis=0)
+    # The best so far holds until there is a better one.
     if len(values) > 1:
-        axes.fill_between(
-            steps, low, high, color=colours.tint(hue, 0.85), linewidth=0, label="all trials"
-        )
-        axes.fill_between(
-            steps, first, third, color=colours.tint(hue, 0.6), linewidth=0, label="half of them"
-        )
+        bands = ((low, high, 0.85, "all trials"), (first, third, 0.6, "half of them"))
+        for bottom, top, pale, label in bands:
+            fill = colours.tint(hue, pale)
+            axes.fill_between(steps, bottom, top, step="post", color=fill, linewidth=0, label=label)
     if 1 < len(values) <= FEW:
         for row in values:
-            axes.plot(steps, row, color=colours.tint(hue, 0.35), linewidth=0.6)
-    axes.plot(steps, middle, color=hue, linewidth=2.2, label="median")
+            axes.step(steps, row, where="post", color=colours.tint(hue, 0.35), linewidth=0.6)
+    axes.step(steps, middle, where="post", color=hue, linewidth=2.2, label="median")
     _mark_ends(axes, steps, middle)
     unit = f" [{trend.unit}]" if trend.unit else ""
     axes.set_title(f"{trend.name}{unit}", loc="left", fontsize=10)
     axes.set_ylim(0.0, 1.08 * max(float(high.max()), 1e-12))
     axes.set_xlim(steps[0], steps[-1] if len(steps) > 1 else steps[0] + 1.0)
-    if steps[-1] > MANY_STEPS:
-        axes.set_xscale("symlog", linthresh=1.0)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)
@@ -162,14 +161,17 @@ def _draw_trend(axes: Axes, trend: ErrorTrend, hue: str) -> None:
 
 
 def _mark_ends(axes: Axes, steps: Array, middle: Array) -> None:
-    """Write the median before and after."""
-    for index, side in ((0, "left"), (-1, "right")):
+    """Write the median before, above its line, and after, beyond it."""
+    for index, offset, up in ((0, (4, 6), "bottom"), (-1, (4, 0), "center")):
+        vanishes = abs(middle[index]) < VANISHES * float(np.max(np.abs(middle)))
         axes.annotate(
-            f"{middle[index]:.3g}",
+            "0" if vanishes else f"{middle[index]:.3g}",
             (steps[index], middle[index]),
-            xytext=(4 if index == 0 else -4, 6),
+            xytext=offset,
             textcoords="offset points",
-            ha=side,
+            ha="left",
+            va=up,
             fontsize=9,
             fontweight="bold",
+            annotation_clip=False,
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+SCREW = re.compile(r"^([2346])([1-5])")
+LOWERED = str.maketrans("12345", "₁₂₃₄₅")
 MOST_COPIES = 3000  # that a picture still shows in reasonable time
 
 
@@ -188,15 +190,15 @@ def _checked_cells(model: PackingModel, cells: Sequence[int] | None) -> tuple[in
 
 def pretty_group(model: PackingModel) -> str:
     """The group's name as it is printed: screw axes with subscripts."""
-    name = model.group.name.replace(" ", "")
-    lattice, rest = name[:1], name[1:]
-    # A digit right after an axis 2, 3, 4 or 6 that is larger than it could only be another axis.
-    shown, previous = "", ""
-    for letter in rest:
-        screw = letter.isdigit() and previous.isdigit() and int(letter) < int(previous)
-        shown += letter.translate(SUBSCRIPTS) if screw else letter
-        previous = "" if screw else letter
-    return lattice + shown
+    name = model.group.name
+    if model.dimension == 2 or model.group.number is None:
+        return name
+    from ellipsoid_planning.crystal.catalogue import gemmi
+
+    found = gemmi().find_spacegroup_by_name(name)
+    # In gemmi's symbols spaces part the axes: P 4 3 2 and P 43 3 2.
+    parts = found.hm.split() if found is not None else [name]
+    return "".join(SCREW.sub(lambda axis: axis[1] + axis[2].translate(LOWERED), p) for p in parts)
 
 
 def _place(edge: Array) -> tuple[int, ...]:
@@ -205,7 +207,7 @@ def _place(edge: Array) -> tuple[int, ...]:
 
 
 def _angles(angles_deg: Sequence[float]) -> str:
+    """Those that are no right ones."""
     names = ("gamma",) if len(angles_deg) == 1 else ("alpha", "beta", "gamma")
-    if all(abs(angle - 90.0) < 1e-9 for angle in angles_deg):
-        return ""
-    return "".join(f", {n} = {v:.5g}°" for n, v in zip(names, angles_deg, strict=True))
+    shown = [(n, v) for n, v in zip(names, angles_deg, strict=True) if abs(v - 90.0) > 1e-9]
+    return "".join(f", {name} = {value:.5g}°" for name, value in shown)

@@ -95,7 +95,7 @@ def rendered(cell: DrawnCell, camera: Camera, low: Array, high: Array, pixels: i
         at_home = (copy.operation, copy.lattice) in home
         original = owner if at_home and copy.operation == 0 else original
         _add_copy(image, cell, copy, owner, at_home)
-    radius = EDGE * float(np.max(high - low))
+    radius = EDGE * float(np.max(high - low)) / np.sqrt(max(cell.counts))
     for line in cell.neighbour_lines():
         image.add_line(line, 0.4 * radius, palette.NEIGHBOUR_CELLS)
     for line in cell.home_edges():

@@ -9,7 +9,7 @@ import numpy as np
 
 from planners.view import crystal_colours as palette
 from planners.view.crystal_cell import DrawnCell, drawn_cell
-from planners.view.crystal_plane import draw_plane_cell
+from planners.view.crystal_plane import draw_plane_cell, plane_window
 from planners.view.crystal_space import FINE, along, draw_space_cell, oblique, window
 from planners.view.figures import DOTS_PER_INCH
 
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from ellipsoid_planning.crystal.model import PackingModel
 
-PLANE_SIZE = (7.0, 8.0)  # [inches]
+PLANE_WIDTH = 7.0  # [inches]
+PLANE_HEIGHTS = (3.5, 10.0)  # the least and the most
 SPACE_SIZE = (10.5, 8.0)
 MOST_IN_LEGEND = 16  # operations
 LETTER_WIDTH = 0.07  # in the legend [inches]
@@ -61,7 +62,7 @@ def draw_cell(cell: DrawnCell, title: str = "") -> Figure:
     from matplotlib.figure import Figure
 
     plane = cell.model.dimension == 2
-    drawn = Figure(figsize=PLANE_SIZE if plane else SPACE_SIZE, layout="constrained")
+    drawn = Figure(figsize=_plane_size(cell) if plane else SPACE_SIZE, layout="constrained")
     drawn.suptitle(title or cell.model.name, fontsize=13, fontweight="bold")
     if plane:
         axes = drawn.add_subplot()
@@ -71,6 +72,13 @@ def draw_cell(cell: DrawnCell, title: str = "") -> Figure:
         _draw_views(drawn, cell)
     add_legend(drawn, [cell])
     return drawn
+
+
+def _plane_size(cell: DrawnCell) -> tuple[float, float]:
+    """As high as the cells need at the whole width, with the words above and below."""
+    low, high = plane_window(cell)
+    up = PLANE_WIDTH * float((high - low)[1] / (high - low)[0])
+    return PLANE_WIDTH, float(np.clip(up + 1.2, *PLANE_HEIGHTS))
 
 
 def _draw_views(drawn: Figure, cell: DrawnCell) -> None:

@@ -344,6 +344,8 @@ def test_group_names_have_subscripts():
         ("P1", [60, 60, 60], "P1"),
         ("P41", [60, 60, 60], "P4₁"),
         ("P4322", [60, 60, 60], "P4₃22"),
+        ("P432", [60, 60, 60], "P432"),
+        ("P4132", [60, 60, 60], "P4₁32"),
     ):
         assert pretty_group(in_group("rabbit-p1", group, lengths)) == name
 

@@ -1,0 +1,74 @@
+"""Minima of the Gaussian cost in the cells of a grid."""
+
+import numpy as np
+import pytest
+
+from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.model import load_model
+from ellipsoid_planning.crystal.potential import GaussianPotential
+from ellipsoid_planning.crystal.potential_candidates import (
+    candidate_counts,
+    candidates_by_potential,
+    cells_of,
+)
+from ellipsoid_planning.errors import CrystalError
+
+PLANE = load_model("rabbit-plane")
+
+
+def test_printed_48_candidates():
+    """Thesis 3.5.1: 30° cells, m_b = 0.2; the extent of the lattice sum is not printed there."""
+    found = candidates_by_potential(PLANE, GaussianMixture(0.2), copies=3, starts=1)
+    assert len(found.cells) == 216
+    assert found.free.sum() == 48
+
+
+def test_counts_at_larger_spread_do_not_depend_on_the_lattice_sum():
+    for copies in (1, None):
+        counts = candidate_counts(PLANE, np.array([3.2]), np.radians([30.0]), copies=copies)
+        assert counts.tolist() == [[168]]
+
+
+def test_minima_are_minima_of_their_cells_whatever_the_threads():
+    seen = []
+    found = candidates_by_potential(
+        PLANE, GaussianMixture(1.6), threads=2, on_progress=lambda *done: seen.append(done)
+    )
+    assert seen[-1] == (216, 216)
+    cells = cells_of(PLANE)
+    assert np.all(found.configurations >= cells[..., 0])
+    assert np.all(found.configurations <= cells[..., 1])
+    potential = GaussianPotential(PLANE, GaussianMixture(1.6))
+    assert potential.values(found.configurations) == pytest.approx(found.potentials, rel=1e-12)
+    rng = np.random.default_rng(0)
+    inside = cells[..., 0] + rng.random((20, 216, 3)) * (cells[..., 1] - cells[..., 0])
+    others = potential.values(inside.reshape(-1, 3)).reshape(20, 216)
+    assert np.all(found.potentials <= others.min(axis=0) + 1e-12)
+    alone = candidates_by_potential(PLANE, GaussianMixture(1.6))
+    assert np.array_equal(alone.configurations, found.configurations)
+    assert len(found.kept) == found.free.sum()
+    assert np.all(PLANE.are_free(found.kept))
+
+
+def test_cells_are_numbered_like_arrangements():
+    for name in ("rabbit-plane", "rabbit-p1"):
+        model = load_model(name)
+        cells = cells_of(model) if name == "rabbit-plane" else cells_of(model, np.radians(60))
+        assert np.all(cells[..., 0] < cells[..., 1])
+    numbers = np.arange(216)
+    assert cells_of(PLANE).mean(axis=-1) == pytest.approx(PLANE.grid.configurations(numbers))
+
+
+def test_steps_that_do_not_divide_a_range_leave_a_narrower_last_cell():
+    cells = np.degrees(cells_of(PLANE, np.radians(40)))
+    assert len(cells) == 125
+    assert cells[-1] == pytest.approx(np.array([[160, 180], [70, 90], [70, 90]]))
+
+
+def test_bad_input():
+    mixture = GaussianMixture(1.0)
+    with pytest.raises(CrystalError, match="step > 0"):
+        candidates_by_potential(PLANE, mixture, step=0.0)
+    for name in ("threads", "nodes", "starts"):
+        with pytest.raises(CrystalError, match=f"{name} >= 1"):
+            candidates_by_potential(PLANE, mixture, **{name: 0})

@@ -86,7 +86,7 @@ class GaussianPotential:
             )
         values, gradients = np.empty(len(given)), np.empty(given.shape)
         gaussian_overlap.potentials(*self._tables, given, values, gradients)
-        return values, gradients
+        return values + self._constant, gradients
 
     @cached_property
     def reaches(self) -> Array:
@@ -122,21 +122,26 @@ class GaussianPotential:
     def _radii(self) -> Array:
         return np.array([float(part.semi_axes.max()) for part in self.model.parts])
 
-    def _overlap(self, semi_axes: Array) -> float:
-        """The overlap of two parts, both centred and aligned, whose Σ sum to a diagonal, b = 1."""
-        n = self.model.dimension
-        return float((2.0 * math.pi) ** (-n / 2.0) / np.prod(semi_axes))
-
     @cached_property
-    def _allowed(self) -> float:
-        """The tail of one pair of parts and one operation; all of a cell together stay in `tail`."""
-        pairs = len(self.model.parts) ** 2 * len(self.model.crystal[0]) ** 2
+    def _themselves(self) -> Array:
+        """(P,): the overlap of each part with itself."""
         n, (b, c) = self.model.dimension, self.mixture.exponents
         first, second = self.mixture.masses(n)
         shape = first**2 * (b / 2) ** (n / 2) + second**2 * (c / 2) ** (n / 2)
         shape += 2 * first * second * (b * c / (b + c)) ** (n / 2)
-        own = min(shape * self._overlap(part.semi_axes) for part in self.model.parts)
-        return self.tail * own / pairs
+        sizes = np.array([float(np.prod(part.semi_axes)) for part in self.model.parts])
+        return np.asarray(shape * (2.0 * math.pi) ** (-n / 2) / sizes)
+
+    @property
+    def _constant(self) -> float:
+        """What the parts' overlaps with themselves add to GCF, whatever the configuration."""
+        return float(self._themselves.sum()) * len(self.model.crystal[0]) * self.own_pairs
+
+    @cached_property
+    def _allowed(self) -> float:
+        """The tail of one pair of parts and one operation; those of a cell stay in `tail`."""
+        pairs = len(self.model.parts) ** 2 * len(self.model.crystal[0]) ** 2
+        return self.tail * float(self._themselves.min()) / pairs
 
     def _peak(self, i: int, j: int) -> float:
         """A bound of the factor before the slowest exponential of two parts' overlap."""

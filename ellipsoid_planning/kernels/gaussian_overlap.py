@@ -108,7 +108,7 @@ def add_copies(i, posed, copy, same, identity, own, reach, span, crystal, planar
 
     ``same`` says that the copy is of part i itself, ``identity`` that no operation moved it: then
     one of each two opposite lattice vectors counts twice. ``own`` keeps the pair of no lattice
-    vector in.
+    vector in, unless it is the part itself: that overlap never changes.
     """
     _, basis, inverse, reaches = crystal
     x, y, z = copy[0] - posed[i, 0], copy[1] - posed[i, 1], copy[2] - posed[i, 2]
@@ -128,7 +128,9 @@ def add_copies(i, posed, copy, same, identity, own, reach, span, crystal, planar
                 continue
             for v2 in range(low2, high2 + 1):
                 none = v0 == 0 and v1 == 0 and v2 == 0
-                if (half and v0 == 0 and v1 == 0 and v2 < 0) or (none and identity and not own):
+                if (half and v0 == 0 and v1 == 0 and v2 < 0) or (
+                    none and identity and (same or not own)
+                ):
                     continue
                 px = x + basis[0, 0] * v0 + basis[0, 1] * v1 + basis[0, 2] * v2
                 py = y + basis[1, 0] * v0 + basis[1, 1] * v1 + basis[1, 2] * v2
@@ -180,6 +182,8 @@ def give_back(terms, column, weight, operations, g, turned, force, wrenches, p):
 @kernel
 def overlap_of_parts(posed, masses, exponents, tails, span, own, crystal, planar, wrenches):
     """The sum of all overlaps of one molecule with itself and its copies, and its gradient.
+
+    The constant overlap of each part with itself is left out.
 
     Args:
         posed: (P, POSED), the molecule's parts in the world.
@@ -292,7 +296,7 @@ def potentials(
     """Write the potential of each arrangement (m, K) to ``values`` (m,), ``gradients`` (m, K).
 
     The molecule's arrays are as in kernels.molecule, the mixture's as in `overlap_of_parts`. The
-    potential is the sum over all molecules of one unit cell.
+    potential is the sum over all molecules of one unit cell, but for each part with itself.
     """
     count = kinds.size
     frames, lines, carried = np.empty((count, FRAME)), np.empty((count, 6)), np.empty((count, 6))

@@ -26,37 +26,37 @@ def test_printed_48_candidates():
 def test_counts_at_larger_spread_do_not_depend_on_the_lattice_sum():
     for copies in (1, None):
         counts = candidate_counts(PLANE, np.array([3.2]), np.radians([30.0]), copies=copies)
-        assert counts.tolist() == [[168]]
+        assert counts.tolist() == [[168]]  # of 216
 
 
 def test_minima_are_minima_of_their_cells_whatever_the_threads():
-    seen = []
+    mixture, step, seen = GaussianMixture(1.6), np.radians(60), []
     found = candidates_by_potential(
-        PLANE, GaussianMixture(1.6), threads=2, on_progress=lambda *done: seen.append(done)
+        PLANE, mixture, step=step, threads=2, on_progress=lambda *done: seen.append(done)
     )
-    assert seen[-1] == (216, 216)
-    cells = cells_of(PLANE)
+    assert seen[-1] == (27, 27)
+    cells = cells_of(PLANE, step)
     assert np.all(found.configurations >= cells[..., 0])
     assert np.all(found.configurations <= cells[..., 1])
-    potential = GaussianPotential(PLANE, GaussianMixture(1.6))
+    potential = GaussianPotential(PLANE, mixture)
     assert potential.values(found.configurations) == pytest.approx(found.potentials, rel=1e-12)
     rng = np.random.default_rng(0)
-    inside = cells[..., 0] + rng.random((20, 216, 3)) * (cells[..., 1] - cells[..., 0])
-    others = potential.values(inside.reshape(-1, 3)).reshape(20, 216)
+    inside = cells[..., 0] + rng.random((100, 27, 3)) * (cells[..., 1] - cells[..., 0])
+    others = potential.values(inside.reshape(-1, 3)).reshape(100, 27)
     assert np.all(found.potentials <= others.min(axis=0) + 1e-12)
-    alone = candidates_by_potential(PLANE, GaussianMixture(1.6))
+    alone = candidates_by_potential(PLANE, mixture, step=step)
     assert np.array_equal(alone.configurations, found.configurations)
     assert len(found.kept) == found.free.sum()
     assert np.all(PLANE.are_free(found.kept))
 
 
 def test_cells_are_numbered_like_arrangements():
-    for name in ("rabbit-plane", "rabbit-p1"):
-        model = load_model(name)
-        cells = cells_of(model) if name == "rabbit-plane" else cells_of(model, np.radians(60))
-        assert np.all(cells[..., 0] < cells[..., 1])
-    numbers = np.arange(216)
+    numbers = np.arange(PLANE.grid.count)
     assert cells_of(PLANE).mean(axis=-1) == pytest.approx(PLANE.grid.configurations(numbers))
+    spatial = load_model("rabbit-p1")
+    coarse = cells_of(spatial, np.radians(45))
+    assert coarse.shape == (2**3 * 2**4, 7, 2)
+    assert np.all(coarse[..., 0] < coarse[..., 1])
 
 
 def test_steps_that_do_not_divide_a_range_leave_a_narrower_last_cell():

@@ -1,18 +1,15 @@
-"""Measured magnitudes: reading them for a model, and writing them."""
+"""Measured magnitudes: reading them for a model."""
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.atomic import write_bytes
-from ellipsoid_planning.crystal.catalogue import gemmi
+from ellipsoid_planning.crystal.data_checks import check_crystal
 from ellipsoid_planning.crystal.magnitudes import Magnitudes
 from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.reflection_table import (
     INTENSITY,
     MAGNITUDE,
@@ -22,8 +19,7 @@ from ellipsoid_planning.crystal.reflection_table import (
 )
 from ellipsoid_planning.crystal.reflections import Reflections, absent, representatives
 from ellipsoid_planning.crystal.structure_factors import reflections_of
-from ellipsoid_planning.crystal.unit_cell import ANGLES
-from ellipsoid_planning.errors import CrystalError, ScenarioError
+from ellipsoid_planning.errors import ScenarioError
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -47,10 +43,6 @@ PREFERRED = (
     "INTENSITYCALC",
     "FSQUAREDCALC",
 )
-
-# A model's cell may be rounded, or measured on another crystal of the same kind.
-LENGTH_TOLERANCE = 0.005
-ANGLE_TOLERANCE_DEG = 0.5
 
 
 def read_magnitudes(
@@ -78,8 +70,7 @@ def read_magnitudes(
         CrystalError: if gemmi is missing.
     """
     table = read_table(path)
-    _check_cell(table, model)
-    _check_group(table, model)
+    check_crystal(table, model)
     name = column or _choose(table)
     if name not in table.columns or table.kinds[name] not in (MAGNITUDE, INTENSITY):
         raise ScenarioError(
@@ -115,41 +106,6 @@ def _choose(table: ReflectionTable) -> str:
         else "expected a column of magnitudes or intensities; the file has none",
         file=table.file,
     )
-
-
-def _check_cell(table: ReflectionTable, model: PackingModel) -> None:
-    if table.cell is None:
-        return
-    for name, own, theirs in zip("abc", model.cell.lengths, table.cell, strict=False):
-        if abs(own - theirs) > LENGTH_TOLERANCE * own:
-            raise _cell_error(table, f"{name} = {own:g}", f"{theirs:g}")
-    count = len(model.cell.angles_deg)  # in the plane only gamma
-    names, angles = ANGLES[-count:], table.cell[-count:]
-    for name, own, theirs in zip(names, model.cell.angles_deg, angles, strict=True):
-        if abs(own - theirs) > ANGLE_TOLERANCE_DEG:
-            raise _cell_error(table, f"{name} = {own:g}", f"{theirs:g}")
-
-
-def _cell_error(table: ReflectionTable, expected: str, got: str) -> ScenarioError:
-    return ScenarioError(
-        f"expected the model's cell with {expected}, got {got}; these data are another crystal's, "
-        "or the model's cell is wrong",
-        file=table.file,
-        field="cell",
-    )
-
-
-def _check_group(table: ReflectionTable, model: PackingModel) -> None:
-    if table.operations is None or model.dimension == 2:
-        return
-    theirs = {Operation.parse(triplet).modulo() for triplet in table.operations}
-    if theirs != set(model.group.operations):
-        raise ScenarioError(
-            f"expected the model's space group {model.group.name}, got {table.group}, or another "
-            "setting of it; give the model the data's group, or reindex the data",
-            file=table.file,
-            field="space group",
-        )
 
 
 def _places(table: ReflectionTable, model: PackingModel, wanted: Integers) -> Integers:
@@ -247,53 +203,3 @@ def _uncertainties(table: ReflectionTable, name: str) -> Array | None:
         if table.kinds.get(tag) == UNCERTAINTY:
             return table.columns[tag]
     return None
-
-
-def write_magnitudes(path: str | Path, magnitudes: Magnitudes, model: PackingModel) -> None:
-    """Write magnitudes to an MTZ file: column FP, and SIGFP if there are uncertainties.
-
-    MTZ files hold numbers of single precision. Planar data become reflections with l = 0 of a
-    cell in P1 with c = 1.
-
-    Raises:
-        CrystalError: if the model's group has no tabulated setting with just its operations, or
-            gemmi is missing.
-        OSError: if the file cannot be written.
-    """
-    library = gemmi()
-    mtz = library.Mtz(with_base=True)
-    mtz.spacegroup = _tabulated(model)
-    mtz.set_cell_for_all(library.UnitCell(*_parameters(model)))
-    mtz.add_dataset("data")
-    mtz.add_column("FP", "F")
-    columns = np.zeros((len(magnitudes), 4))
-    columns[:, : model.dimension] = magnitudes.indices
-    columns[:, 3] = magnitudes.values
-    if magnitudes.sigmas is not None:
-        mtz.add_column("SIGFP", "Q")
-        columns = np.column_stack([columns, magnitudes.sigmas])
-    mtz.set_data(columns.astype(np.float32))
-    with tempfile.TemporaryDirectory() as folder:
-        beside = Path(folder) / "magnitudes.mtz"
-        mtz.write_to_file(str(beside))
-        write_bytes(path, beside.read_bytes())
-
-
-def _parameters(model: PackingModel) -> tuple[float, ...]:
-    if model.dimension == 2:
-        return (*model.cell.lengths.tolist(), 1.0, 90.0, 90.0, *model.cell.angles_deg)
-    return (*model.cell.lengths.tolist(), *model.cell.angles_deg)
-
-
-def _tabulated(model: PackingModel) -> object:
-    library = gemmi()
-    if model.dimension == 2:
-        return library.find_spacegroup_by_name("P 1")
-    ops = [library.Op(operation.triplet()) for operation in model.group.operations]
-    found = library.find_spacegroup_by_ops(library.GroupOps(ops))
-    if found is None:
-        raise CrystalError(
-            f"{model.group.name}: no tabulated setting has these operations, which an MTZ file "
-            "needs; choose the group's standard axes and origin"
-        )
-    return found

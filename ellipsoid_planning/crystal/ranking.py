@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.crystal.collisions import GridSearch, base_frames
 from ellipsoid_planning.crystal.fourier_cost import FourierCost
@@ -21,6 +21,10 @@ Integers = NDArray[np.int64]
 # Costs are whole multiples of this share of the cost of an empty cell. Rounding errors are
 # a thousand times smaller; costs that differ by less are equal, and the lower number goes first.
 QUANTUM = 1e-10
+
+# Above so many numbers in the tables of limbs, arrangements are compared one by one.
+LARGEST_TABLE = 1 << 27
+PLAIN_AT_ONCE = 1 << 16
 
 # About so many arrangements of the grid are searched and ranked at a time.
 AT_ONCE = 1 << 21
@@ -96,11 +100,30 @@ class Ranker:
         grid = self.search.model.grid
         if len(numbers) and not 0 <= numbers.min() <= numbers.max() < grid.count:
             raise CrystalError(f"expected numbers of arrangements from 0 to {grid.count - 1}")
+        if self._table_size > LARGEST_TABLE:
+            return self._one_by_one(numbers, best)
         found = np.full(best, kernels.NOTHING), np.full(best, kernels.NOTHING)
         kernels.rank_arrangements(numbers, *self._tables, found)
         kept = found[0][found[1] != kernels.NOTHING]
         costs = found[1][: len(kept)] * self._quantum
         return Ranking(kept, grid.configurations(kept), costs, len(numbers))
+
+    def _one_by_one(self, numbers: Integers, best: int) -> Ranking:
+        """As `rank` without tables, for limbs of too many poses."""
+        grid = self.search.model.grid
+        pieces = np.array_split(np.sort(numbers), len(numbers) // PLAIN_AT_ONCE + 1)
+        parts = []
+        for piece in pieces:
+            whole = grid.configurations(piece)
+            listed = rank_listed(self.cost, whole, best)
+            places = piece[listed.numbers]
+            parts.append(Ranking(places, listed.configurations, listed.costs, len(piece)))
+        return merged(parts, best)
+
+    @property
+    def _table_size(self) -> int:
+        spots, reflections = self.cost.structure.table[0].shape[1], len(self.cost.magnitudes)
+        return 2 * len(self.search.tables[2]) * (spots + reflections)
 
     @property
     def _quantum(self) -> float:
@@ -156,6 +179,22 @@ class Ranker:
 def rank(search: GridSearch, numbers: Integers, cost: FourierCost, best: int = 10) -> Ranking:
     """The ``best`` of the arrangements ``numbers`` (m,) of a grid; see `Ranker`."""
     return Ranker(search, cost).rank(numbers, best)
+
+
+def rank_listed(cost: FourierCost, configurations: ArrayLike, best: int = 10) -> Ranking:
+    """The ``best`` of any configurations (m, K), such as minima of a potential.
+
+    Their numbers are their places in the list.
+
+    Raises:
+        CrystalError: if ``best`` is less than 1, or the configurations have another size.
+    """
+    _check_best(best)
+    whole = cost.structure.checked(configurations)
+    quantum = QUANTUM * cost.norm
+    costs = np.round(cost.values(whole) / quantum) * quantum
+    numbers = np.lexsort((np.arange(len(costs)), costs))[:best].astype(np.int64)
+    return Ranking(numbers, whole[numbers], costs[numbers], len(costs))
 
 
 def rank_free(

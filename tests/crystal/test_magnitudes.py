@@ -4,7 +4,8 @@ import gemmi
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.magnitude_files import read_magnitudes, write_magnitudes
+from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
+from ellipsoid_planning.crystal.magnitude_writing import write_magnitudes
 from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.reflections import all_reflections
@@ -211,7 +212,7 @@ def test_nothing_left_is_refused(model, tmp_path):
         read_magnitudes(path, model, skip_missing=True)
 
 
-def test_magnitudes_check_themselves(model, target):
+def test_magnitudes_check_themselves(target):
     for values, message in (
         (target.values[1:], "expected 80 numbers"),
         (-target.values, r"reflection \(\d, \d, \d\): expected a magnitude of 0 or more, got -"),

@@ -5,11 +5,20 @@ import itertools
 import numpy as np
 import pytest
 
+from ellipsoid_planning.crystal import ranking
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.magnitudes import simulate
 from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.ranking import QUANTUM, Ranker, chunks, merged, rank, rank_free
+from ellipsoid_planning.crystal.ranking import (
+    QUANTUM,
+    Ranker,
+    chunks,
+    merged,
+    rank,
+    rank_free,
+    rank_listed,
+)
 from ellipsoid_planning.errors import CrystalError
 from tests.crystal.packings import one_body
 from tests.crystal.test_structure_factors import drawers
@@ -55,6 +64,9 @@ def test_other_joints_shifts_and_molecules_that_stand_still():
     models.append(one_body("P21", "{lengths: [9, 9, 9]}", [1.0, 2.0, 1.0]))
     turning = "{orientation: {yaw_deg: {lower: 0, upper: 180, step: 4}}}"
     models.append(one_body("p1", "{lengths: [9, 9]}", [1.0, 2.0], turning))
+    every = "{position: {y: {lower: 0, upper: 4, step: 1}}, orientation: {grid: 600-cell, "
+    every += "resolution_deg: 40}}"
+    models.append(one_body("P21", "{lengths: [9, 9, 9]}", [1.0, 2.0, 1.5], every, [0.5, 1.0, 0.2]))
     for model in models:
         target = model.grid.configurations([model.grid.count // 2])[0] + 0.1
         cost = FourierCost(model, simulate(model, target))
@@ -113,6 +125,34 @@ def test_chunks_are_whole_turns_and_leave_nothing_out():
     assert ends[0][0] == 0 and ends[-1][1] == search.model.grid.base_poses
     assert all(a[1] == b[0] and a[1] % ranker.shifts == 0 for a, b in itertools.pairwise(ends))
     assert ranker.shifts == 100
+
+
+def test_without_tables_it_is_the_same(monkeypatch):
+    search, cost = case("rabbit-p212121")
+    numbers = np.random.default_rng(0).permutation(some(search.model, 3000))
+    ranker = Ranker(search, cost)
+    tables = ranker.rank(numbers)
+    monkeypatch.setattr(ranking, "LARGEST_TABLE", 0)
+    monkeypatch.setattr(ranking, "PLAIN_AT_ONCE", 1000)
+    plain = ranker.rank(numbers)
+    assert np.array_equal(plain.numbers, tables.numbers)
+    assert np.max(np.abs(plain.costs - tables.costs)) <= 2.0 * QUANTUM * cost.norm
+    assert np.array_equal(plain.configurations, tables.configurations)
+    assert plain.looked_at == tables.looked_at == len(numbers)
+
+
+def test_any_list_is_ranked():
+    search, cost = case("rabbit-plane")
+    listed = np.random.default_rng(0).uniform(0.0, 3.0, (50, 3))
+    listed[7] = listed[31] = load_target("rabbit-plane-target", search.model)
+    found = rank_listed(cost, listed, 5)
+    assert found.numbers[:2].tolist() == [7, 31] and found.costs[:2].tolist() == [0.0, 0.0]
+    assert np.array_equal(found.numbers[2:], np.argsort(cost.values(listed))[2:5])
+    assert np.array_equal(found.configurations, listed[found.numbers]) and found.looked_at == 50
+    assert len(rank_listed(cost, listed[:3])) == 3
+    assert len(rank_listed(cost, np.zeros((0, 3)))) == 0
+    with pytest.raises(CrystalError, match="3 finite numbers"):
+        rank_listed(cost, listed[:, :2])
 
 
 def test_progress_is_told():

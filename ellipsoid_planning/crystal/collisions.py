@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.kernels import layout, molecule, packing, packing_search
 
 Array = NDArray[np.float64]
@@ -98,15 +99,11 @@ class GridSearch:
 
     @cached_property
     def own(self) -> NDArray[np.bool_]:
-        """(L, L), which two limbs of one molecule are looked at for collisions."""
-        count = len(self.limb_frames)
-        own = np.zeros((count, count), bool)
-        pairs = watched_pairs(self.model)
+        """(P, P), which two parts of one molecule must keep apart; limb by limb, as in `tables`."""
         frames = self.model.molecule.part_frames
-        for i, j in pairs:
-            a, b = (self.limb_frames.index(int(frames[k])) for k in (i, j))
-            own[a, b] = own[b, a] = True
-        return own
+        order = np.concatenate([np.flatnonzero(frames == frame) for frame in self.limb_frames])
+        watched = _watched(self.model)
+        return np.ascontiguousarray((watched | watched.T)[np.ix_(order, order)])
 
     def free(self, first: int, last: int) -> Integers:
         """Numbers of the free arrangements whose base poses are ``first`` to ``last`` - 1."""
@@ -165,6 +162,15 @@ def watched_pairs(model: PackingModel) -> list[tuple[int, int]]:
     ]
 
 
+def _watched(model: PackingModel) -> NDArray[np.bool_]:
+    """(P, P), whether :func:`watched_pairs` has the pair [i, j], i < j."""
+    count = len(model.molecule.parts)
+    pairs = np.zeros((count, count), bool)
+    for i, j in watched_pairs(model):
+        pairs[i, j] = True
+    return pairs
+
+
 def _shape_rows(model: PackingModel, parts: Integers) -> Array:
     """Rows (m, BODY) of parts in their coordinates' frames, for kernels.packing."""
     rows = np.zeros((len(parts), layout.BODY))
@@ -180,11 +186,20 @@ def _shape_rows(model: PackingModel, parts: Integers) -> Array:
 
 
 def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.bool_]:
-    """Whether each arrangement (m, K) is free; True is proved."""
+    """Whether each arrangement (m, K) is free; True is proved.
+
+    Raises:
+        CrystalError: if the shape is another, or a value is not finite.
+    """
     whole = model.molecule
-    pairs = np.zeros((len(whole.parts), len(whole.parts)), bool)
-    for i, j in watched_pairs(model):
-        pairs[i, j] = True
+    size = len(whole.coordinates)
+    if configurations.ndim != 2 or configurations.shape[1] != size:
+        raise CrystalError(
+            f"{model.name}: expected configurations of shape (m, {size}) "
+            f"({', '.join(model.keys)}), got shape {configurations.shape}"
+        )
+    if not np.all(np.isfinite(configurations)):
+        raise CrystalError(f"{model.name}: expected configurations of finite numbers")
     shapes = _shape_rows(model, np.arange(len(whole.parts)))
     free = np.empty(len(configurations), bool)
     packing.arrangements_free(
@@ -194,7 +209,7 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
         whole.axes,
         whole.part_frames,
         shapes,
-        pairs,
+        _watched(model),
         model.crystal,
         model.required,
         np.ascontiguousarray(configurations),

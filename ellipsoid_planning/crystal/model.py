@@ -121,7 +121,11 @@ class PackingModel:
         return bool(arrangements_free(self, values[None])[0])
 
     def are_free(self, configurations: ArrayLike) -> NDArray[np.bool_]:
-        """:meth:`is_free` of many configurations (m, K)."""
+        """:meth:`is_free` of many configurations (m, K).
+
+        Raises:
+            CrystalError: if the shape is another, or a value is not finite.
+        """
         from ellipsoid_planning.crystal.collisions import arrangements_free
 
         return arrangements_free(self, np.asarray(configurations, dtype=float))

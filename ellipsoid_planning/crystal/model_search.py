@@ -16,7 +16,7 @@ from ellipsoid_planning.crystal.molecule import EULER_NAMES, Coordinate, Molecul
 from ellipsoid_planning.crystal.ranges import Range
 from ellipsoid_planning.crystal.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError, GridError
-from ellipsoid_planning.robots.joint import Joint
+from ellipsoid_planning.robots.joint import CONTINUOUS, Joint
 from ellipsoid_planning.scenario_origin import Origin, Path
 
 SHIFTS = ("x", "y", "z")
@@ -140,7 +140,8 @@ class SearchGrid:
             if block is None
             else self._range(block, place, (joint.lower, joint.upper), unit)
         )
-        if range_.lower < joint.lower - rounding or range_.upper > joint.upper + rounding:
+        below, above = range_.lower < joint.lower - rounding, range_.upper > joint.upper + rounding
+        if joint.type != CONTINUOUS and (below or above):
             got = f"{range_.lower / unit:g} to {range_.upper / unit:g}"
             if block is None:
                 got = "none, so that the joint would stand at 0"

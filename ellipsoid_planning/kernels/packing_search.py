@@ -19,14 +19,18 @@ UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
 
 @released
-def limbs_apart(
-    bodies, first, first_count, second, second_count, same, own, crystal, required, copy
-):
-    """Whether all copies of two limbs' bodies keep apart, and they themselves where ``own``."""
+def limbs_apart(bodies, limbs, one, first, other, second, own, crystal, required, copy):
+    """Whether all copies of two limbs' bodies keep apart, and they themselves where ``own``.
+
+    The bodies of the limbs ``one`` and ``other`` begin at the rows ``first`` and ``second``.
+    """
     operations, basis, inverse, reaches = crystal
-    for i in range(first, first + first_count):
-        for j in range(i if same else second, second + second_count):
-            if own and not own_apart(bodies, i, j, required, copy):
+    for p in range(limbs[one, 3]):
+        i = first + p
+        for q in range(p if one == other else 0, limbs[other, 3]):
+            j = second + q
+            watched = own[limbs[one, 2] + p, limbs[other, 2] + q]
+            if watched and not own_apart(bodies, i, j, required, copy):
                 return False
             if not copies_apart(
                 bodies, i, j, i == j, operations, basis, inverse, reaches, required, copy
@@ -64,7 +68,7 @@ def search_grid(
         strides: (L, C), what a step of each joint adds to a limb's pose.
         levels: (L,), from which joint on a limb's pose is settled (-1: the base).
         counts: (C,), values of each joint; the last one varies fastest.
-        own: (L, L), whether two limbs of one molecule may meet each other.
+        own: (P, P), which two parts of one molecule must keep apart, numbered as in ``shapes``.
         crystal: operations, basis, inverse, reaches; see `copies_apart`.
         required: the distance to be proved.
         found: where to write base pose · (number of joint values) + joint values' number. The
@@ -95,7 +99,7 @@ def search_grid(
         if written + total > found.size:
             return written, base
         if not _start_base(
-            bases, base, limbs, shapes, placements, crystal, required, bodies, frame, copy
+            bases, base, limbs, shapes, placements, own, crystal, required, bodies, frame, copy
         ):
             continue
         pairs[:] = UNKNOWN
@@ -152,21 +156,13 @@ def search_grid(
 
 
 @released
-def _start_base(bases, base, limbs, shapes, placements, crystal, required, bodies, frame, copy):
+def _start_base(
+    bases, base, limbs, shapes, placements, own, crystal, required, bodies, frame, copy
+):
     """Place the base's bodies, and see whether their copies keep apart."""
     _place_limb(bases, base, limbs, shapes, placements, 0, 0, bodies, frame)
-    return limbs_apart(
-        bodies,
-        limbs[0, 4],
-        limbs[0, 3],
-        limbs[0, 4],
-        limbs[0, 3],
-        True,
-        False,
-        crystal,
-        required,
-        copy,
-    )
+    row = limbs[0, 4]
+    return limbs_apart(bodies, limbs, 0, row, 0, row, own, crystal, required, copy)
 
 
 @released
@@ -216,27 +212,17 @@ def _level_free(
         if alone[state] == UNKNOWN:
             _place_limb(bases, base, limbs, shapes, placements, limb, pose, bodies, frame)
             free = limbs_apart(
-                bodies,
-                limbs[0, 4],
-                limbs[0, 3],
-                row,
-                count,
-                False,
-                own[0, limb],
-                crystal,
-                required,
-                copy,
-            ) and limbs_apart(bodies, row, count, row, count, True, False, crystal, required, copy)
+                bodies, limbs, 0, limbs[0, 4], limb, row, own, crystal, required, copy
+            ) and limbs_apart(bodies, limbs, limb, row, limb, row, own, crystal, required, copy)
             alone[state] = FREE if free else BLOCKED
         if alone[state] == BLOCKED:
             return False
         for other in range(1, limb):
             entry = pair_first[limb, other] + pose * limbs[other, 1] + poses[other]
             if pairs[entry] == UNKNOWN:
-                size = limbs[other, 3]
-                at = limbs[other, 4] + poses[other] * size
+                at = limbs[other, 4] + poses[other] * limbs[other, 3]
                 free = limbs_apart(
-                    bodies, at, size, row, count, False, own[other, limb], crystal, required, copy
+                    bodies, limbs, other, at, limb, row, own, crystal, required, copy
                 )
                 pairs[entry] = FREE if free else BLOCKED
             if pairs[entry] == BLOCKED:

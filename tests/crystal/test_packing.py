@@ -6,6 +6,7 @@ import pytest
 
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.model import load_model, load_target
+from ellipsoid_planning.errors import CrystalError
 from tests.crystal.packings import model_from, one_body, one_body_text, smallest_gap
 
 HAIR = 1e-9
@@ -199,6 +200,45 @@ def test_the_pruned_search_finds_what_looking_at_each_arrangement_finds(group, c
     found = GridSearch(model).free(0, model.grid.base_poses)
     np.testing.assert_array_equal(found, np.flatnonzero(whole))
     assert len(found) > 0
+
+
+# A hand of two links that a fixed joint holds together: only one of them is joined to the arm.
+FIXED_HAND = """\
+format: 1
+name: fixed hand
+dimension: 2
+group: p2
+cell: {lengths: [9, 8], angles_deg: [80]}
+molecule:
+  links:
+    - {name: thumb, parts: [{semi_axes: [0.2, 0.5], position: [-0.2, 1.1]}]}
+    - {name: arm, parts: [{semi_axes: [1.5, 0.4]}]}
+    - {name: palm, parts: [{semi_axes: [0.9, 0.5], position: [0.6, 0]}]}
+  joints:
+    - {name: glued, type: fixed, parent: palm, child: thumb}
+    - {name: wrist, type: continuous, parent: arm, child: palm, origin: {position: [1.3, 0]}}
+search:
+  position: {x: {step: 1.5}}
+  orientation: {yaw_deg: {step: 60}}
+  joints: {wrist_deg: {lower: 0, upper: 360, step: 30}}
+diffraction: {resolution: 2}
+"""
+
+
+def test_links_held_together_meet_others_each_by_its_own_rule():
+    model = model_from(FIXED_HAND)
+    whole = model.are_free(model.grid.configurations(np.arange(model.grid.count)))
+    found = GridSearch(model).free(0, model.grid.base_poses)
+    np.testing.assert_array_equal(found, np.flatnonzero(whole))
+    gaps = [smallest_gap(model, q) for q in model.grid.configurations(np.arange(model.grid.count))]
+    np.testing.assert_array_equal(whole, np.array(gaps) > 0)
+    assert 0 < len(found) < model.grid.count
+
+
+@pytest.mark.parametrize("wrong", [np.zeros((3, 6)), np.zeros(7), [], np.full((2, 7), np.nan)])
+def test_arrangements_of_another_size_are_refused(wrong):
+    with pytest.raises(CrystalError, match="expected configurations of"):
+        load_model("rabbit-p1").are_free(wrong)
 
 
 def test_ranges_of_base_poses_add_up():

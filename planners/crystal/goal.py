@@ -56,7 +56,7 @@ class Box:
 class Budget:
     """Ends a solve after so many costs, by the condition that the solve was given.
 
-    Counted, not timed: the same seed gives the same tree on every machine.
+    Counted, not timed, so that the same seed gives the same tree.
     """
 
     def __init__(self, costs: int, condition: ob.PlannerTerminationCondition) -> None:

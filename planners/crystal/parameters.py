@@ -24,7 +24,8 @@ class Refinement:
         threshold: the cost C that is low enough, as a share of the cost of an empty cell; by
             default 1e-6 where least squares ends the search, 0.02 for trees alone. Exact
             magnitudes can be met to rounding; measured ones cannot.
-        reach: how many steps of the model's grid an arrangement may move to either side.
+        reach: how many steps of the model's grid an arrangement may move to either side at a time:
+            a tree, or least squares, which goes on when it ends at the edge.
         rounds: trees one after another, each rooted at the best so far.
         steps: arrangements that join a tree.
         shrink: what the reach is multiplied by from one round to the next.

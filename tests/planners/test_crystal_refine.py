@@ -9,8 +9,9 @@ from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.magnitudes import simulate
 from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.polish import neighbourhood
+from ellipsoid_planning.crystal.polish import neighbourhood, polish
 from ellipsoid_planning.errors import CrystalError, PlannerError
+from planners.crystal import tree
 from planners.crystal.parameters import Refinement
 from planners.crystal.phasing import phase_candidates
 from planners.crystal.refine import refine
@@ -69,14 +70,25 @@ def test_coordinates_without_reach_stay():
     assert np.array_equal(best, start) and len(trace) == 1 and lowest == cost.value(start)
 
 
-def test_trees_are_freed():
+def test_nothing_of_a_tree_outlives_it(monkeypatch):
     model, target, cost = case("rabbit-plane")
     start = free_near(model, target, 0.3, 1)
-    *_, trace = grow_tree(cost, start, neighbourhood(model, 0.5), 20, 0.0, 1)
-    left = weakref.ref(trace)
-    del trace
+    left = []
+
+    def remembered(kind):
+        def make(*arguments):
+            made = kind(*arguments)
+            left.append(weakref.ref(made))
+            return made
+
+        return make
+
+    for name in ("LowCost", "FreeArrangements", "Box", "Budget"):
+        monkeypatch.setattr(tree, name, remembered(getattr(tree, name)))
+    grow_tree(cost, start, neighbourhood(model, 0.5), 20, 0.0, 1)
     gc.collect()
-    assert left() is None
+    assert len(left) == 4
+    assert [one() for one in left] == [None] * 4
 
 
 @pytest.mark.parametrize(("method", "error_deg"), [("polish", 1e-6), ("rrt", 2.0), ("both", 1e-6)])
@@ -89,6 +101,17 @@ def test_each_method_comes_nearer_to_the_target(method, error_deg):
     assert arrangement_errors(model, found.configuration, target).mae_deg < error_deg
     assert np.array_equal(found.trace.configurations[0], start)
     assert (found.rounds == 0) == (method != "rrt")
+
+
+def test_least_squares_goes_on_from_the_edge_of_its_reach():
+    model = load_model("rabbit-p1")
+    target = np.radians([13.19, 51.33, 28.71, 20.18, 6.47, 21.37, 27.79])
+    start = np.radians([25.0, 55.0, 15.0, -5.0, -5.0, 25.0, 25.0])
+    cost = FourierCost(model, simulate(model, target))
+    assert polish(cost, start).cost > 1e-4 * cost.norm
+    found = refine(cost, start, Refinement(method="polish"))
+    assert found.free and found.cost < 1e-9 * cost.norm
+    assert arrangement_errors(model, found.configuration, target).e_max_deg < 1e-5
 
 
 def test_the_rrt_refuses_to_start_in_a_collision():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,9 @@ from ellipsoid_planning.errors import CrystalError
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+# More lattice points than this in the box around the sphere are a slip of the unit, no data.
+MOST_POINTS = 20_000_000
 
 # Points on the sphere belong to it, whatever rounding has made of their length.
 ON_THE_SPHERE = 1e-10
@@ -53,11 +57,18 @@ def all_reflections(cell: UnitCell, resolution: float) -> Reflections:
     so that none is forgotten. Of each pair the one whose first index that is not 0 is positive.
 
     Raises:
-        CrystalError: if the resolution is no positive number, or no reflection reaches it.
+        CrystalError: if the resolution is no positive number, no reflection reaches it, or far too
+            many do.
     """
     if not (np.isfinite(resolution) and resolution > 0.0):
         raise CrystalError(f"expected a positive resolution, got {resolution:g}")
-    reach = np.floor(cell.lengths / resolution * (1.0 + ON_THE_SPHERE)).astype(np.int64)
+    largest = np.floor(cell.lengths / resolution * (1.0 + ON_THE_SPHERE))
+    if math.prod(2.0 * k + 1.0 for k in largest.tolist()) > MOST_POINTS:
+        raise CrystalError(
+            f"a resolution of {resolution:g} asks for indices up to {largest.max():g}, millions of "
+            "reflections; choose a larger spacing"
+        )
+    reach = largest.astype(np.int64)
     axes = [np.arange(-k, k + 1) for k in reach]
     axes[0] = np.arange(reach[0] + 1)
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, cell.dimension)
@@ -66,8 +77,9 @@ def all_reflections(cell: UnitCell, resolution: float) -> Reflections:
     found = _sorted(grid[squares * resolution**2 <= 1.0 + ON_THE_SPHERE], cell)
     if not len(found):
         raise CrystalError(
-            f"no reflection of the cell has a spacing of {resolution:g} or more; the largest is "
-            f"{np.sqrt(1.0 / np.sum(cell.reciprocal**2, axis=0)).max():g}, choose a smaller one"
+            f"no reflection of the cell has a spacing of {resolution:g} or more; planes along its "
+            f"faces are up to {1.0 / np.linalg.norm(cell.reciprocal, axis=0).min():g} apart, "
+            "choose a smaller one"
         )
     return Reflections(found, _vectors(found, cell), _frozen(np.ones(len(found), np.int64)))
 

@@ -84,9 +84,11 @@ def piece_size(grid: ArrangementGrid) -> int:
     return max(1, share // shifts * shifts, share if share < shifts else 1)
 
 
-def search_pieces(grid: ArrangementGrid, size: int | None = None) -> tuple[Piece, ...]:
+def search_pieces(
+    grid: ArrangementGrid, size: int | None = None, stage: str = "search"
+) -> tuple[Piece, ...]:
     """The pieces of a grid's search, in base poses."""
-    return pieces("search", grid.base_poses, size or piece_size(grid))
+    return pieces(stage, grid.base_poses, size or piece_size(grid))
 
 
 @dataclass(frozen=True, eq=False)

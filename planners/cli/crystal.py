@@ -6,6 +6,7 @@ import typer
 
 from planners.cli.crystal_models import models
 from planners.cli.crystal_pack import pack
+from planners.cli.crystal_phase import phase
 from planners.cli.crystal_schema import schema
 from planners.cli.crystal_show import show
 
@@ -31,5 +32,5 @@ def _root() -> None:
     """
 
 
-for command in (models, show, pack, schema):
+for command in (models, show, pack, phase, schema):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)

@@ -27,7 +27,7 @@ def draw_cell(
         EllipsoidPlanningError: a file cannot be written.
     """
     if figure is not None:
-        from planners.view.figures_crystal import picture_of_cell  # type: ignore[import-not-found,unused-ignore]
+        from planners.view.figures_crystal import picture_of_cell
         from planners.view.writing import write_whole
 
         with working("Drawing the figure"):
@@ -35,7 +35,7 @@ def draw_cell(
         write_whole(figure, picture)
         say(f"Wrote {figure}")
     if html is not None:
-        from planners.view.crystal_page import page_of_cell  # type: ignore[import-not-found,unused-ignore]
+        from planners.view.crystal_page import page_of_cell
         from planners.view.meshcat_page import write_page
 
         with working("Drawing the page"):

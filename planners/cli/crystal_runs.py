@@ -92,6 +92,15 @@ class Session:
     ) -> None:
         self.execute, self.store, self.interrupted = execute, store, interrupted
 
+    def check(self) -> None:
+        """Go no further after Ctrl-C.
+
+        Raises:
+            KeyboardInterrupt: there was one.
+        """
+        if self.interrupted.is_set():
+            raise KeyboardInterrupt
+
     def results(self, title: str, work: Work, pieces: Sequence[Piece]) -> Iterator[Any]:
         """The pieces' results in order, with their progress on stderr.
 

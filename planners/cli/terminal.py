@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import Console
 
+WIDTH = 200
+"""Of tables for files and pipes [characters]."""
+
 
 def say(message: str) -> None:
     """Write a line to stderr, neither wrapped nor coloured, so that it can be searched for."""
@@ -22,6 +25,13 @@ def result_console() -> Console:
     from rich.console import Console
 
     return Console()
+
+
+def wide_console() -> Console:
+    """As `result_console`, for wide tables: nothing is folded for a file or a pipe."""
+    from rich.console import Console
+
+    return Console() if sys.stdout.isatty() else Console(width=WIDTH)
 
 
 @contextmanager

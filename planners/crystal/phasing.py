@@ -18,6 +18,7 @@ from .refine import Refined, refine
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int, float], None]
+Refiner = Callable[[FourierCost, Array, Refinement], Refined]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +93,7 @@ def phase_candidates(
     candidates: ArrayLike,
     parameters: Refinement | None = None,
     on_progress: Progress | None = None,
+    refiner: Refiner = refine,
 ) -> PhasingOutcome:
     """Refine one candidate after the other until one has a cost at or below the threshold.
 
@@ -104,6 +106,7 @@ def phase_candidates(
         parameters: of the refinement; the defaults if None.
         on_progress: called after each refinement with how many were done, how many there may be,
             and the lowest cost so far.
+        refiner: what refines a candidate; `kept.KeptRefinements` takes up an earlier run.
 
     Raises:
         CrystalError: there are no candidates, or of another size.
@@ -123,7 +126,7 @@ def phase_candidates(
     tried: list[Tried] = []
     for one_pass in passes:
         for number, candidate in enumerate(given):
-            refined = refine(cost, candidate, one_pass)
+            refined = refiner(cost, candidate, one_pass)
             tried.append(Tried(number, candidate, cost.value(candidate), refined))
             best = min(tried, key=_merit)
             if on_progress is not None:

@@ -1,0 +1,77 @@
+"""What ``crystal phase`` looks for: a target's arrangement, or magnitudes that were measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ellipsoid_planning.crystal.fourier_cost import FourierCost
+    from ellipsoid_planning.crystal.model import PackingModel
+
+DATA_SUFFIXES = (".mtz", ".cif", ".mmcif", ".ent")
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """What is looked for.
+
+    Attributes:
+        name: as the user gave it.
+        cost: FCF against it.
+        target: (K,), the arrangement, None if only magnitudes are known.
+    """
+
+    name: str
+    cost: FourierCost
+    target: NDArray[np.float64] | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Data for JSON."""
+        magnitudes = self.cost.magnitudes
+        model = self.cost.model
+        return {
+            "name": self.name,
+            "source": magnitudes.source,
+            "reflections": len(magnitudes),
+            "completeness": magnitudes.completeness,
+            "scaled": self.cost.scaled,
+            "configuration": None if self.target is None else model.values_of(self.target),
+        }
+
+
+def load_data(
+    name: str, model: PackingModel, column: str | None = None, *, skip_missing: bool = False
+) -> Data:
+    """The magnitudes of a file, or those of a target's arrangement.
+
+    Args:
+        name: a file with magnitudes (MTZ, CIF), a target's YAML file, or a bundled target's name.
+        model: the packing model.
+        column: of the file's magnitudes.
+        skip_missing: leave reflections of the file without a usable value out.
+
+    Raises:
+        EllipsoidPlanningError: something is wrong with them.
+    """
+    from ellipsoid_planning.crystal.fourier_cost import FourierCost
+    from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
+    from ellipsoid_planning.crystal.magnitudes import simulate
+    from ellipsoid_planning.crystal.model import load_target
+    from ellipsoid_planning.errors import CrystalError
+
+    if Path(name).suffix.lower() in DATA_SUFFIXES:
+        magnitudes = read_magnitudes(name, model, column, skip_missing=skip_missing)
+        return Data(name, FourierCost(model, magnitudes, scaled=magnitudes.relative), None)
+    if column is not None or skip_missing:
+        option = "--skip-missing" if column is None else f"--column {column}"
+        raise CrystalError(
+            f"{option}: it belongs to a file of magnitudes, and the target {name} is an "
+            "arrangement; remove it"
+        )
+    target = load_target(name, model)
+    return Data(name, FourierCost(model, simulate(model, target)), target)

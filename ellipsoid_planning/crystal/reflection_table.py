@@ -144,9 +144,12 @@ def _cif_table(file: str, block: Any, prefix: str) -> ReflectionTable:
             raise ScenarioError("expected whole numbers only", file=file, field=prefix + name)
         indices.append(values.astype(np.int64))
     kinds = {tag: CIF_KINDS[tag] for tag in tags if tag in CIF_KINDS}
-    columns = {
-        tag: _numbers(file, prefix + tag, block.find_loop(prefix + tag), indices) for tag in kinds
-    }
+    columns = {}
+    for tag, kind in kinds.items():
+        texts = list(block.find_loop(prefix + tag))
+        if kind == UNCERTAINTY:  # what is odd there is as good as nothing
+            texts = [text if NUMBER.fullmatch(text) else "?" for text in texts]
+        columns[tag] = _numbers(file, prefix + tag, texts, indices)
     group = _cif_group(block)
     name = group.xhm() if group is not None else ""
     cell = _cif_cell(block)

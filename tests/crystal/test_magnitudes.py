@@ -95,6 +95,9 @@ def test_equivalents_average(model, tmp_path):
     assert found.indices.tolist() == [[1, 0, 1]]
     assert found.values.tolist() == [4.0] and found.sigmas.tolist() == [2.5]
     assert len(found.missing) == len(reflections_of(model)) - 1
+    path = write(tmp_path, "_refln.F_meas_au\n_refln.F_meas_sigma_au\n1 0 1 3 3\n-1 0 1 5 *\n")
+    odd = read_magnitudes(path, model)
+    assert odd.values.tolist() == [4.0] and odd.sigmas is None
     assert found.completeness == pytest.approx(1 / 80)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from planners.cli.crystal_fit import fit
 from planners.cli.crystal_models import models
 from planners.cli.crystal_pack import pack
 from planners.cli.crystal_phase import phase
@@ -32,5 +33,5 @@ def _root() -> None:
     """
 
 
-for command in (models, show, pack, phase, schema):
+for command in (models, show, pack, phase, fit, schema):
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)

@@ -13,9 +13,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Ellipse as EllipsePatch
 
 from ellipsoid_planning.crystal.copies import copies, middle_of
+from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.model_build import model_of
 from ellipsoid_planning.crystal.overlaps import overlaps
+from ellipsoid_planning.crystal.potential import GaussianPotential
 from ellipsoid_planning.crystal.trace import Trace, trend
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry import Ellipsoid
@@ -28,6 +30,12 @@ from planners.view.crystal_space import along, oblique, rendered, window
 from planners.view.crystal_tables import candidates_rows, candidates_table, error_columns
 from planners.view.figures_crystal import draw_cell, picture_of_cell
 from planners.view.figures_crystal_candidates import picture_of_candidates
+from planners.view.figures_crystal_molecule import motions, picture_of_molecule
+from planners.view.figures_crystal_potential import (
+    draw_candidate_counts,
+    draw_potential_map,
+    picture_of_mixture,
+)
 from planners.view.figures_crystal_trends import (
     ErrorTrend,
     draw_trends,
@@ -219,10 +227,10 @@ def test_formats(suffix):
         assert content.startswith(first)
 
 
-def test_a_spatial_picture_is_written_whole():
-    model, q = target_of("rabbit-p212121")
-    assert picture_of_cell(model, q, "png").startswith(b"\x89PNG")
-    assert len(draw_cell(drawn_cell(model, q)).axes) == 4
+def test_a_spatial_picture_has_a_view_from_a_corner_and_one_along_each_axis():
+    drawn = draw_cell(drawn_cell(*target_of("rabbit-p1")))
+    assert [axes.get_title() for axes in drawn.axes[1:]] == ["along a", "along b", "along c"]
+    FigureCanvasAgg(drawn).draw()
 
 
 def commands_of(page):
@@ -327,6 +335,48 @@ def test_soft_bodies_may_overlap_as_deep_as_the_model_says():
     soft = dataclasses.replace(model, overlap=3.0)
     assert soft.is_free(q) and not drawn_cell(soft, q).overlaps
     assert "free of overlaps deeper than 3" in drawn_cell(soft, q).headline()
+
+
+def test_the_map_of_the_potential_is_that_of_the_model():
+    model, _ = target_of("rabbit-plane")
+    potential = GaussianPotential(model, GaussianMixture(1.6))
+    drawn = draw_potential_map(potential, fixed={"left_ear_deg": 90}, pixels=7)
+    shown = [np.asarray(axes.images[0].get_array()) for axes in drawn.axes[:2]]
+    for row, column in ((0, 0), (3, 5), (6, 2)):
+        yaw, ear = (column + 0.5) / 7 * 180, -90 + (row + 0.5) / 7 * 180
+        q = model.configuration({"yaw_deg": yaw, "right_ear_deg": ear, "left_ear_deg": 90})
+        assert bool(shown[0][row, column]) == model.is_free(q)
+        assert shown[1][row, column] == pytest.approx(potential.value(q))
+    for fixed, message in (({"x": 1.0}, "'x' is no coordinate"), ({"yaw_deg": 0.0}, "not held")):
+        with pytest.raises(CrystalError, match=message):
+            draw_potential_map(potential, "yaw_deg", "right_ear_deg", fixed, pixels=2)
+
+
+def test_contours_and_counts():
+    model, q = target_of("rabbit-plane")
+    assert picture_of_mixture(model, q, GaussianMixture(0.2), "png").startswith(b"\x89PNG")
+    with pytest.raises(CrystalError, match="3-dimensional"):
+        picture_of_mixture(*target_of("rabbit-p1"), GaussianMixture(0.2), "png")
+    (axes,) = draw_candidate_counts({"30°": ([0.1, 0.2, 0.4], [10, 48, 20])}).axes
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), [10, 48, 20])
+    assert [text.get_text() for text in axes.texts] == ["48 at 0.2"]
+
+
+def test_degrees_of_freedom_have_the_axes_about_which_they_move():
+    for name in ("rabbit-plane", "rabbit-p212121"):
+        model, q = target_of(name)
+        found = motions(model, q)
+        assert len(found) == len(model.keys)
+        centres = model.molecule.placed(q)[0]
+        for k, motion in enumerate(found):
+            moved = model.molecule.placed(q + 1e-6 * np.eye(len(q))[k])[0]
+            rate = (moved - centres) / 1e-6
+            turns = model.molecule.coordinates[k].turns
+            expected = np.cross(motion.direction, centres - motion.point)
+            expected = expected if turns else np.tile(motion.direction, (len(centres), 1))
+            still = np.linalg.norm(rate, axis=1) < 1e-7
+            np.testing.assert_allclose(rate[~still], expected[~still], atol=1e-4)
+        assert picture_of_molecule(model, "png").startswith(b"\x89PNG")
 
 
 def test_bad_cells_are_refused():

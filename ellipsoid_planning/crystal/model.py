@@ -101,9 +101,22 @@ class PackingModel:
     @cached_property
     def required(self) -> float:
         """The gap [length] from which on bodies count as free: rounding, less the overlap."""
-        size = float(np.linalg.norm(self.crystal[1], axis=0).max())
-        size += sum(float(part.semi_axes.max()) for part in self.parts)
-        return layout.ROUNDING * 4.0 * size - self.overlap
+        _, basis, _, reaches = self.crystal
+        n = self.dimension
+        edges = np.linalg.norm(basis[:n, :n], axis=0)
+        size = edges.max() + sum(float(part.semi_axes.max()) for part in self.parts)
+        # Far from the origin, and in flat cells, whose lattice vectors nearly cancel, more is lost.
+        stretch = float(edges @ reaches[:n])
+        return float(layout.ROUNDING * (4.0 * size + stretch * self._lever)) - self.overlap
+
+    @property
+    def _lever(self) -> float:
+        """How far [length] from the origin the parts' centres can come in the grid's ranges."""
+        whole = self.molecule
+        ends = [max(abs(r.lower), abs(r.upper)) for r in self.grid.ranges]
+        shifts = sum(end for end, c in zip(ends, whole.coordinates, strict=True) if not c.turns)
+        links = float(np.linalg.norm(whole.origins[:, 9:], axis=1).sum())
+        return float(shifts + links + np.linalg.norm(whole.parts[:, :3], axis=1).max())
 
     def is_free(self, configuration: ArrayLike) -> bool:
         """Whether no two copies of the molecule, nor parts that should not, meet.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from math import lcm
 from typing import TypeVar
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.crystal.cell_check import check_cell
+from ellipsoid_planning.crystal.exact_matrix import exact_matrix, inverse, multiply
 from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
@@ -128,8 +130,11 @@ class SpaceGroup:
             CrystalError: the cell contradicts the group.
         """
         self.check_cell(cell)
-        rotations = cell.basis @ self.rotations @ cell.reciprocal.T
-        return rotations, cell.cartesian(self.translations)
+        # Exactly, and rounded at the end: in flat cells large numbers cancel.
+        basis = exact_matrix([[Fraction(entry) for entry in row] for row in cell.basis.tolist()])
+        back = inverse(basis)
+        turns = [multiply(multiply(basis, op.rotation), back) for op in self.operations]
+        return np.array(turns, dtype=float), cell.cartesian(self.translations)
 
     def check_cell(self, cell: UnitCell) -> None:
         """Check that the linear parts keep all lengths and angles in this cell.

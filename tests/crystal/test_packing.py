@@ -4,8 +4,10 @@ import math
 import numpy as np
 import pytest
 
+from ellipsoid_planning.crystal.catalogue import space_group
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.model import load_model, load_target
+from ellipsoid_planning.crystal.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
 from tests.crystal.packings import model_from, one_body, one_body_text, smallest_gap
 
@@ -93,6 +95,34 @@ def test_the_rabbits_agree_with_the_slow_twin(name):
 def test_neighbours_that_miss_or_touch_by_a_hair(group, cell, semi_axes, position, hair):
     model = one_body(group, cell.format(2.0 + hair), semi_axes, position=position)
     assert model.is_free([]) == (hair > 0)
+
+
+def test_what_rounding_hides_far_from_the_origin_counts_as_a_collision():
+    # A ball at the end of a long lever that is turned away and back, and its inverted image.
+    text = """\
+format: 1
+name: lever
+dimension: 3
+group: P-1
+cell: {{lengths: [10, 30, 30]}}
+molecule:
+  links: [{{name: a}}, {{name: b, parts: [{{semi_axes: [1, 1, 1], position: [{0!r}, 0, 0]}}]}}]
+  joints: [{{name: j, type: continuous, parent: a, child: b, axis: [0, 0, 1],
+    origin: {{orientation: {{axis_angle: {{axis: [0, 0, 1], angle_deg: {1}}}}}}}}}]
+search: {{joints: {{j_deg: {{lower: 0, upper: 360, step: 360}}}}}}
+diffraction: {{resolution: 2}}
+"""
+    for angle in range(5, 360, 17):
+        model = model_from(text.format(1e5 + 1.0 - 1.5e-11, -angle))
+        assert not model.is_free(model.configuration({"j_deg": angle})), angle
+        model = model_from(text.format(1e5 + 1.0 + 1e-8, -angle))
+        assert model.is_free(model.configuration({"j_deg": angle})), angle
+
+
+def test_operations_are_isometries_in_flat_cells_too():
+    cell = UnitCell.from_parameters([7.0, 8.0, 9.0], [90.0, 0.01, 90.0])
+    rotations, _ = space_group("P21").cartesian(cell)
+    np.testing.assert_allclose(rotations[1], np.diag([-1.0, 1.0, -1.0]), atol=1e-15)
 
 
 @pytest.mark.parametrize("hair", [HAIR, -HAIR])

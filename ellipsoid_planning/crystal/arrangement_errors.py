@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ellipsoid_planning.crystal.body_fit import body_unit
 from ellipsoid_planning.crystal.equivalents import Equivalents
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.kernels.molecule import TURN
@@ -66,24 +67,20 @@ def arrangement_errors(
 ) -> ArrangementErrors:
     """The errors of a configuration (K,) against a target (K,): those of its best equivalent.
 
-    E_h decides which is the best.
+    The best is the one whose coordinates differ least, by root mean square, shifts measured by the
+    largest semi-axis. E_h is no judge of that: to it a spheroid that turned about its axis moved.
     """
     true = np.asarray(target, dtype=float)
     equivalents = _equivalents(model).near(configuration, true)
-    every = [
-        plain_errors(model, one.configuration, true, one.isometry.triplet()) for one in equivalents
-    ]
-    return min(every, key=lambda errors: errors.motion)
+    best = min(equivalents, key=lambda one: _distance(model, one.configuration, true))
+    return plain_errors(model, best.configuration, true, best.isometry.triplet())
 
 
 def plain_errors(
     model: PackingModel, configuration: Array, target: Array, isometry: str = ""
 ) -> ArrangementErrors:
     """The errors of one configuration as it is, angles modulo whole turns."""
-    away = np.abs(configuration - target)
-    turns = model.molecule.kinds == TURN
-    angles = np.abs((away[turns] + math.pi) % (2.0 * math.pi) - math.pi)
-    shifts = away[~turns]
+    angles, shifts = _differences(model, configuration, target)
     motion, turning = motion_error(model, configuration, target)
     return ArrangementErrors(
         configuration,
@@ -93,6 +90,20 @@ def plain_errors(
         float(angles.mean()) if len(angles) else 0.0,
         float(angles.max()) if len(angles) else 0.0,
         float(shifts.mean()) if len(shifts) else None,
+    )
+
+
+def _differences(model: PackingModel, first: Array, second: Array) -> tuple[Array, Array]:
+    """Absolute differences of angles, modulo whole turns, and of shifts."""
+    away = np.abs(first - second)
+    turns = model.molecule.kinds == TURN
+    return np.abs((away[turns] + math.pi) % (2.0 * math.pi) - math.pi), away[~turns]
+
+
+def _distance(model: PackingModel, first: Array, second: Array) -> float:
+    angles, shifts = _differences(model, first, second)
+    return float(
+        np.hypot(np.linalg.norm(angles), np.linalg.norm(shifts) / body_unit(model.molecule))
     )
 
 

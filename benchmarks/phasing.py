@@ -39,7 +39,7 @@ PARTS = ("table", "plane", "p1", "p212121")
 COUNTS = {"table": 10, "plane": 200, "p1": 100, "p212121": 30}
 GRIDS_DEG = (30.0, 15.0, 10.0)
 SPREADS = (0.2, 1.6)
-BEST = 10
+BEST = 50
 # The thesis refines the best candidate with a tree of 30 steps; ours has rounds of them.
 METHODS = {
     "RRT, 30 steps": Refinement(method="rrt", rounds=1, steps=30, reach=1.0),
@@ -66,12 +66,15 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
     parser.add_argument("--targets", type=int, help="of each part (its own number)")
     parser.add_argument("--trees", type=int, default=20, help="targets for trees alone (20)")
+    parser.add_argument("--candidates", type=int, default=BEST, help=f"to refine ({BEST})")
     parser.add_argument("--noise", type=float, default=0.0, help="relative, of magnitudes (0)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--output", type=Path, help="a JSON file with all trials")
     given = parser.parse_args()
-    if (given.targets is not None and given.targets < 1) or given.noise < 0.0 or given.trees < 0:
-        parser.error("targets must be 1 or more, noise and trees 0 or more")
+    if given.candidates < 1 or (given.targets is not None and given.targets < 1):
+        parser.error("candidates and targets must be 1 or more")
+    if given.noise < 0.0 or given.trees < 0:
+        parser.error("noise and trees must be 0 or more")
     return given
 
 
@@ -80,7 +83,7 @@ def progress(message: str) -> None:
     sys.stderr.flush()
 
 
-def by_collisions(model: PackingModel, best: int = BEST) -> tuple[Candidates, int]:
+def by_collisions(model: PackingModel, best: int) -> tuple[Candidates, int]:
     """Candidates from the grid's free arrangements, and how many these are."""
     search, numbers = free_numbers(model)
 
@@ -92,7 +95,7 @@ def by_collisions(model: PackingModel, best: int = BEST) -> tuple[Candidates, in
     return candidates, len(numbers)
 
 
-def by_potential(model: PackingModel, spread: float, best: int = BEST) -> tuple[Candidates, int]:
+def by_potential(model: PackingModel, spread: float, best: int) -> tuple[Candidates, int]:
     """Candidates from the minima of GCF with m_b = ``spread``, and how many these are."""
     from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
     from ellipsoid_planning.crystal.potential_candidates import candidates_by_potential
@@ -200,7 +203,7 @@ def on_grid(model: PackingModel, candidates: Candidates, given: argparse.Namespa
 def table_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     """The ten targets of Table 3.2, from candidates of several kinds."""
     model = load_model("rabbit-plane")
-    sources = _planar_sources(model)
+    sources = _planar_sources(model, given.candidates)
     found = {}
     lines = [
         "\n### Table 3.2: MAE [°] after refinement\n",
@@ -221,14 +224,14 @@ def table_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     return found
 
 
-def _planar_sources(model: PackingModel) -> dict[str, tuple[Candidates, int]]:
+def _planar_sources(model: PackingModel, best: int) -> dict[str, tuple[Candidates, int]]:
     found = {}
     for step in GRIDS_DEG:
-        one = by_collisions(with_step(model, step))
+        one = by_collisions(with_step(model, step), best)
         found[f"grid of {step:g}°, {one[1]} free"] = one
     try:
         for spread in SPREADS:
-            one = by_potential(model, spread)
+            one = by_potential(model, spread, best)
             found[f"m_b = {spread:g}, {one[1]} free minima"] = one
     except ImportError:
         progress("no candidates by potential here")
@@ -240,7 +243,7 @@ def plane_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     model = load_model("rabbit-plane")
     targets = random_targets(model, given.targets or COUNTS["plane"], given.seed)
     found = {}
-    for title, (candidates, _) in _planar_sources(model).items():
+    for title, (candidates, _) in _planar_sources(model, given.candidates).items():
         trials = run(f"plane, {title}", model, targets, candidates, given)
         print(summary(f"Plane, {title}", trials), wrong_minima(trials), flush=True)
         found[f"plane, {title}"] = trials
@@ -251,7 +254,7 @@ def space_part(name: str, given: argparse.Namespace) -> dict[str, list[Trial]]:
     """Random targets of a spatial rabbit."""
     model = load_model(f"rabbit-{name}")
     began = time.perf_counter()
-    candidates, count = by_collisions(model)
+    candidates, count = by_collisions(model, given.candidates)
     progress(f"{name}: {count} free of {model.grid.count}, {time.perf_counter() - began:.1f} s")
     targets = random_targets(model, given.targets or COUNTS[name], given.seed)
     trials = run(name, model, targets, candidates, given)

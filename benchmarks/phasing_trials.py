@@ -90,7 +90,8 @@ def _result(
     parameters: Refinement,
     with_trend: bool,
 ) -> MethodResult:
-    outcome = phase_candidates(cost, candidates, parameters)
+    given = candidates[:SHOWN] if parameters.method == "rrt" else candidates
+    outcome = phase_candidates(cost, given, parameters)
     found: ArrangementErrors = arrangement_errors(cost.model, outcome.configuration, target)
     course = None
     if with_trend and parameters.method == "rrt":

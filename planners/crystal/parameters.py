@@ -28,6 +28,8 @@ class Refinement:
             a tree, or least squares, which goes on when it ends at the edge.
         rounds: trees one after another, each rooted at the best so far.
         steps: arrangements that join a tree.
+        trees: with method "both", for how many of the candidates, the best ones, trees are grown
+            when least squares has solved none; the thesis keeps ten.
         shrink: what the reach is multiplied by from one round to the next.
         seed: of the RRT.
 
@@ -40,13 +42,14 @@ class Refinement:
     reach: float = 2.0
     rounds: int = 6
     steps: int = 300
+    trees: int = 10
     shrink: float = 0.6
     seed: int = 1
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise PlannerError(f"method: expected {', '.join(METHODS)}, got {self.method!r}")
-        for name in ("rounds", "steps"):
+        for name in ("rounds", "steps", "trees"):
             if type(value := getattr(self, name)) is not int or value < 1:
                 raise PlannerError(f"{name}: expected an integer of 1 or more, got {value!r}")
         for name in ("cost_share", "reach", "shrink"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -98,7 +98,7 @@ def phase_candidates(
     """Refine one candidate after the other until one has a cost at or below the threshold.
 
     With method "both" least squares goes through all candidates before the first tree grows: it
-    takes milliseconds, a tree takes most of a second.
+    takes milliseconds, a tree takes most of a second. So give it more than the thesis' ten.
 
     Args:
         cost: FCF against the target, which knows the model.
@@ -122,27 +122,27 @@ def phase_candidates(
         )
     chosen = parameters or Refinement()
     threshold = chosen.cost_share * cost.norm
-    passes = _passes(chosen)
+    plan = _plan(chosen, len(given))
     tried: list[Tried] = []
-    for one_pass in passes:
-        for number, candidate in enumerate(given):
-            refined = refiner(cost, candidate, one_pass)
-            tried.append(Tried(number, candidate, cost.value(candidate), refined))
-            best = min(tried, key=_merit)
-            if on_progress is not None:
-                on_progress(len(tried), len(passes) * len(given), best.refined.cost)
-            if best.refined.free and best.refined.cost <= threshold:
-                seconds = time.perf_counter() - began
-                return PhasingOutcome(True, best, tuple(tried), threshold, seconds)
+    for number, one_way in plan:
+        refined = refiner(cost, given[number], one_way)
+        tried.append(Tried(number, given[number], cost.value(given[number]), refined))
+        best = min(tried, key=_merit)
+        if on_progress is not None:
+            on_progress(len(tried), len(plan), best.refined.cost)
+        if best.refined.free and best.refined.cost <= threshold:
+            seconds = time.perf_counter() - began
+            return PhasingOutcome(True, best, tuple(tried), threshold, seconds)
     return PhasingOutcome(False, best, tuple(tried), threshold, time.perf_counter() - began)
 
 
-def _passes(parameters: Refinement) -> list[Refinement]:
+def _plan(parameters: Refinement, count: int) -> list[tuple[int, Refinement]]:
+    """Which candidate is refined how, in order."""
     if parameters.method != "both":
-        return [parameters]
-    from dataclasses import replace
-
-    return [replace(parameters, method="polish"), parameters]
+        return [(number, parameters) for number in range(count)]
+    polished = replace(parameters, method="polish")
+    trees = range(min(count, parameters.trees))
+    return [(number, polished) for number in range(count)] + [(n, parameters) for n in trees]
 
 
 def _merit(tried: Tried) -> tuple[bool, float]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning import atomic
 from ellipsoid_planning.crystal.catalogue import gemmi
+from ellipsoid_planning.crystal.solvent import solvent_factors
 from ellipsoid_planning.crystal.space_group import SpaceGroup
 from ellipsoid_planning.crystal.structure import CrystalStructure
 from ellipsoid_planning.crystal.unit_cell import UnitCell
@@ -49,11 +50,16 @@ class CalculatedFactors:
         return np.asarray(1.0 / np.linalg.norm(self.hkl @ self.cell.reciprocal.T, axis=1))
 
 
-def calculated_factors(structure: CrystalStructure, resolution: float) -> CalculatedFactors:
-    """The structure factors of a structure's atoms in a vacuum, to a resolution [Å].
+def calculated_factors(
+    structure: CrystalStructure, resolution: float, *, solvent: bool = False
+) -> CalculatedFactors:
+    """The structure factors of a structure to a resolution [Å]; see `factors_at`.
 
-    The sum over all atoms, exactly, with their occupancies, isotropic B factors and X-ray form
-    factors; neither hydrogens nor solvent are there.
+    Args:
+        structure: the molecule.
+        resolution: smallest spacing of the lattice planes [Å].
+        solvent: fill the space between the molecules with flat solvent, as in real crystals: it
+            leaves only a fifth of the contrast. Otherwise there is a vacuum.
 
     Raises:
         CrystalError: the resolution is not positive, leaves no reflections or too many.
@@ -61,11 +67,18 @@ def calculated_factors(structure: CrystalStructure, resolution: float) -> Calcul
     if not (math.isfinite(resolution) and resolution > 0.0):
         raise CrystalError(f"resolution {resolution:g}: expected a positive length in ångström")
     hkl = _reflections(structure, resolution)
-    return CalculatedFactors(structure.cell, structure.group, hkl, factors_at(structure, hkl))
+    values = factors_at(structure, hkl)
+    if solvent:
+        values += solvent_factors(structure, hkl)
+    return CalculatedFactors(structure.cell, structure.group, hkl, values)
 
 
 def factors_at(structure: CrystalStructure, hkl: NDArray[np.int64]) -> NDArray[np.complex128]:
-    """The structure factors (m,) [electrons] of a structure's atoms at indices (m, 3)."""
+    """The structure factors (m,) [electrons] of a structure's atoms at indices (m, 3).
+
+    The sum over all atoms, exactly, with their occupancies, isotropic B factors and X-ray form
+    factors. Hydrogens ride on the other atoms of their residues.
+    """
     atoms, group = structure.atoms, structure.group
     squares = 0.25 * np.sum((hkl @ structure.cell.reciprocal.T) ** 2, axis=1)
     weights = atoms.occupancies * _form_factors(structure, squares)
@@ -104,13 +117,17 @@ def _form_factors(structure: CrystalStructure, squares: Array) -> Array:
     library = gemmi()
     atoms = structure.atoms
     kinds, which = np.unique(atoms.elements, return_inverse=True)
+    found = [library.Element(symbol) for symbol in kinds.tolist()]
     table = np.empty((len(squares), len(kinds)))
-    for column, symbol in enumerate(kinds.tolist()):
-        coefficients = library.Element(symbol).it92
-        if coefficients is None:
-            raise CrystalError(f"{structure.file}: there is no form factor of {symbol!r}")
-        table[:, column] = [coefficients.calculate_sf(square) for square in squares]
-    return np.asarray(table[:, which] * np.exp(-np.outer(squares, atoms.b_factors)))
+    for column, element in enumerate(found):
+        if element.it92 is None:
+            raise CrystalError(f"{structure.file}: there is no form factor of {element.name!r}")
+        table[:, column] = [element.it92.calculate_sf(square) for square in squares]
+    hydrogen = library.Element("H").it92
+    riding = np.array([hydrogen.calculate_sf(square) for square in squares])
+    bare = np.array([element.atomic_number for element in found], dtype=float)[which]
+    whole = table[:, which] + np.outer(riding, atoms.electrons / atoms.occupancies - bare)
+    return np.asarray(whole * np.exp(-np.outer(squares, atoms.b_factors)))
 
 
 def _waves(hkl: Array, points: Array, weights: Array) -> NDArray[np.complex128]:

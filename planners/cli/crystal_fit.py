@@ -91,6 +91,12 @@ def fit(
             help="Magnitudes of the real atoms, calculated to the resolution: FC and PHIC.",
         ),
     ] = None,
+    solvent: Annotated[
+        bool,
+        typer.Option(
+            "--solvent", help="Magnitudes of a crystal with solvent between the molecules."
+        ),
+    ] = False,
     json: Annotated[
         bool, typer.Option("--json", help="Print everything as JSON in place of tables.")
     ] = False,
@@ -119,7 +125,7 @@ def fit(
     model = FittedModel(fitted, steps, name or found.name, depth)
     _warn(model, contacts)
     if magnitudes is not None:
-        _calculate(found, resolution, magnitudes)
+        _calculate(found, resolution, magnitudes, solvent=solvent)
     _write(model.model(), output)
     _write(model.target(), target)
     if json:
@@ -180,11 +186,13 @@ def _warn(model: FittedModel, contacts: list[Contact]) -> None:
         say("No chain crosses from one domain to another: they move as one body.")
 
 
-def _calculate(structure: CrystalStructure, resolution: float, file: Path) -> None:
+def _calculate(
+    structure: CrystalStructure, resolution: float, file: Path, *, solvent: bool
+) -> None:
     from ellipsoid_planning.crystal.calculated import calculated_factors, write_mtz
 
     with working("Calculating structure factors"):
-        factors = calculated_factors(structure, resolution)
+        factors = calculated_factors(structure, resolution, solvent=solvent)
         write_mtz(factors, file, f"calculated from {structure.name}")
     say(f"Wrote {len(factors.hkl)} reflections to {file}")
 

@@ -29,6 +29,7 @@ from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.model_build import model_of, target_of
+from ellipsoid_planning.crystal.solvent import solvent_factors
 from ellipsoid_planning.crystal.structure import Atoms, CrystalStructure, read_structure
 from ellipsoid_planning.crystal.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
@@ -62,7 +63,9 @@ def made_of(points, cell, group, element="C"):
     texts = [np.full(count, text) for text in (element, "CA", "A")]
     numbers = np.arange(count, dtype=np.int64) + 1
     polymer = np.ones(count, dtype=bool)
-    atoms = Atoms(points, plain, plain, 1.7 * plain, plain, 0.0 * plain, *texts, numbers, polymer)
+    electrons = {"C": 6.0, "S": 16.0}[element] * plain
+    radii, zeros = 1.7 * plain, 0.0 * plain
+    atoms = Atoms(points, plain, electrons, radii, plain, zeros, *texts, numbers, polymer)
     return CrystalStructure("made", "made.pdb", "", cell, space_group(group), atoms)
 
 
@@ -232,6 +235,22 @@ def test_structure_factors_against_gemmi(group):
     assert factors.spacings.min() >= 3.5 and np.all(np.any(factors.hkl != 0, axis=1))
     far = factors_at(made, np.array([[0, 0, 0]]))[0]
     assert far == pytest.approx(16.0 * 12 * made.group.order, rel=1e-3)
+
+
+def test_solvent_leaves_a_part_of_the_contrast(protein):
+    dry, wet = (calculated_factors(protein, 12.0, solvent=solvent) for solvent in (False, True))
+    assert np.array_equal(dry.hkl, wet.hkl)
+    low = dry.spacings > 25.0
+    # Babinet: the mask is what the molecules are not, so that it takes from every magnitude.
+    shares = np.abs(wet.values[low]) / np.abs(dry.values[low])
+    assert 0.1 < np.median(shares) < 0.35
+    mask = wet.values - dry.values
+    assert np.corrcoef(mask[low], dry.values[low])[0, 1].real < -0.95
+    # One atom in a large cell: the transform of the hole that it leaves.
+    one = made_of(np.zeros((1, 3)), UnitCell.from_parameters([60.0, 60.0, 60.0]), "P1")
+    hole = solvent_factors(one, np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1]]))
+    np.testing.assert_allclose(hole, hole[0], rtol=1e-3)
+    assert -0.35 * 60.0 < hole[0].real < -0.35 * 10.0 and abs(hole[0].imag) < 1e-3
 
 
 def test_magnitudes_in_mtz_files(protein, tmp_path):

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 TAIL = 1e-10
 # More lattice vectors along an axis than are ever looked at.
 EVERY = 1_000_000
+# More copies than this for each pair of parts are refused: seconds for one value.
+MOST = 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,17 @@ class GaussianPotential:
         for (i, j), _ in np.ndenumerate(found):
             squares = float(radii[i] ** 2 + radii[j] ** 2)
             found[i, j] = self._reach(squares, self._peak(i, j))
+        self._check_work(float(found.max()))
         return found
+
+    def _check_work(self, reach: float) -> None:
+        n = self.model.dimension
+        copies = (math.pi if n == 2 else 4.0 * math.pi / 3.0) * reach**n / self.model.cell.volume
+        if copies > MOST:
+            raise CrystalError(
+                f"m_b = {self.mixture.spread:g} makes Gaussians so wide that {copies:.3g} "
+                "copies of the cell count; enlarge m_b, or limit the copies"
+            )
 
     @cached_property
     def truncation(self) -> float:

@@ -14,6 +14,18 @@ from ellipsoid_planning.crystal.potential_candidates import (
 from ellipsoid_planning.errors import CrystalError
 
 PLANE = load_model("rabbit-plane")
+TARGETS = [
+    (100.82, -72.21, -3.03),
+    (42.29, 64.37, -69.25),
+    (136.67, -68.70, -67.33),
+    (114.21, -63.46, -51.42),
+    (54.83, -49.51, -70.41),
+    (159.67, 47.67, -2.65),
+    (101.63, -67.65, 12.06),
+    (113.89, -73.69, 30.76),
+    (66.41, 27.29, -76.94),
+    (97.19, -1.59, -86.46),
+]
 
 
 def test_printed_48_candidates():
@@ -23,10 +35,27 @@ def test_printed_48_candidates():
     assert found.free.sum() == 48
 
 
+def test_free_share_of_the_planar_rabbit():
+    """26.5 %: of the nodes 0, 30, ..., 150 of the heading and -90, -60, ..., 90 of both ears."""
+    ears = np.radians(np.arange(-90, 91, 30))
+    nodes = np.stack(np.meshgrid(np.radians(np.arange(0, 180, 30)), ears, ears), -1).reshape(-1, 3)
+    assert (PLANE.are_free(nodes).sum(), len(nodes)) == (78, 294)
+
+
 def test_counts_at_larger_spread_do_not_depend_on_the_lattice_sum():
     for copies in (1, None):
         counts = candidate_counts(PLANE, np.array([3.2]), np.radians([30.0]), copies=copies)
         assert counts.tolist() == [[168]]  # of 216
+
+
+def test_minima_lie_near_all_ten_targets():
+    """Thesis Table 3.2; theta_3 is minus the left ear's angle, yaw + 180° the inversion twin."""
+    targets = np.array(TARGETS) * [1, 1, -1]
+    step = np.radians(15)
+    found = candidates_by_potential(PLANE, GaussianMixture(3.2), step=step, nodes=3).kept
+    apart = np.degrees(found)[None] - targets[:, None]
+    apart[..., 0] = (apart[..., 0] + 90) % 180 - 90
+    assert np.abs(apart).max(axis=-1).min(axis=1).max() < 12.0
 
 
 def test_minima_are_minima_of_their_cells_whatever_the_threads():

@@ -211,5 +211,7 @@ def test_bad_input():
         GaussianPotential(model, GaussianMixture(1.0), tail=0.0)
     with pytest.raises(CrystalError, match="copies >= 0"):
         GaussianPotential(model, GaussianMixture(1.0), copies=-1)
+    with pytest.raises(CrystalError, match="copies of the cell"):
+        GaussianPotential(model, GaussianMixture(1e-9)).value(np.zeros(3))
     with pytest.raises(CrystalError, match="3 finite numbers"):
         GaussianPotential(model, GaussianMixture(1.0)).value([0.0, 1.0])

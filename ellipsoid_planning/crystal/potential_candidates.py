@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,8 @@ CELLS_AT_ONCE = 16
 NODES = ((3, 7), (5, 3))
 UNIT = [(0.0, 1.0)]
 TOL = {"ftol": 1e-12, "gtol": 1e-8, "maxiter": 200}
+# A minimum takes a millisecond at the least.
+MOST_CELLS = 2_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +78,7 @@ def cells_of(model: PackingModel, step: float | None = None) -> Array:
 
     Raises:
         CrystalError: if the orientations come from a grid of rotations, which has no such cells,
-            or the step is not positive.
+            there are too many cells, or the step is not positive.
     """
     grid = model.grid
     if grid.turns is not None:
@@ -92,6 +95,12 @@ def cells_of(model: PackingModel, step: float | None = None) -> Array:
         coordinate, values = model.molecule.coordinates[k], grid.ranges[k]
         cut = step is not None and coordinate.turns and values.upper > values.lower
         sides.append(_cut(values.lower, values.upper, step or 0.0) if cut else values.cells)
+    count = math.prod(map(len, sides))
+    if count > MOST_CELLS:
+        raise CrystalError(
+            f"the grid has {count:,} cells, and a minimum is looked for in each: expected at most "
+            f"{MOST_CELLS:,}; make the cells larger by a step along the angles, or the grid coarser"
+        )
     cells = np.array(list(itertools.product(*sides))).reshape(-1, len(order), 2)
     return np.asarray(cells[:, np.argsort(order)])
 
@@ -100,6 +109,52 @@ def _cut(lower: float, upper: float, step: float) -> Array:
     count = max(1, math.ceil((upper - lower) / step * (1.0 - FITS)))
     edges = np.append(lower + step * np.arange(count), upper)
     return np.stack([edges[:-1], edges[1:]], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class CellSearch:
+    """The search for the minimum of GCF in each cell of a model's grid.
+
+    Attributes:
+        model: the molecule, its crystal and its grid.
+        mixture: what stands for an ellipsoid in GCF.
+        own_pairs, copies, step, nodes, starts: see `candidates_by_potential`.
+
+    Raises:
+        CrystalError: if nodes or starts are less than 1.
+    """
+
+    model: PackingModel
+    mixture: GaussianMixture
+    own_pairs: bool = True
+    copies: int | None = None
+    step: float | None = None
+    nodes: int | None = None
+    starts: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, given in (("nodes", self.nodes), ("starts", self.starts)):
+            if given is not None and given < 1:
+                raise CrystalError(f"expected {name} >= 1, got {given}")
+
+    @cached_property
+    def cells(self) -> Array:
+        """(C, K, 2), see `cells_of`."""
+        return cells_of(self.model, self.step)
+
+    @cached_property
+    def potential(self) -> GaussianPotential:
+        """GCF."""
+        return GaussianPotential(self.model, self.mixture, self.own_pairs, copies=self.copies)
+
+    def minima(self, first: int, last: int) -> tuple[Array, Array]:
+        """The minima (m, K) of the cells ``first`` to ``last`` - 1, and GCF there (m,)."""
+        cells = self.cells[first:last]
+        points = _nodes(self.cells[0, :, 1] > self.cells[0, :, 0], self.nodes)
+        found, values = np.empty(cells.shape[:2]), np.empty(len(cells))
+        for k, cell in enumerate(cells):
+            found[k], values[k] = _minimum(self.potential, cell, points, self.starts)
+        return found, values
 
 
 def candidates_by_potential(
@@ -133,18 +188,17 @@ def candidates_by_potential(
     Raises:
         CrystalError: see `cells_of`; if there is no start or no thread.
     """
-    for name, given in (("nodes", nodes), ("starts", starts), ("threads", threads)):
-        if given is not None and given < 1:
-            raise CrystalError(f"expected {name} >= 1, got {given}")
-    cells = cells_of(model, step)
-    potential = GaussianPotential(model, mixture, own_pairs, copies=copies)
-    points = _nodes(cells[0, :, 1] > cells[0, :, 0], nodes)
+    if threads < 1:
+        raise CrystalError(f"expected threads >= 1, got {threads}")
+    search = CellSearch(
+        model, mixture, own_pairs=own_pairs, copies=copies, step=step, nodes=nodes, starts=starts
+    )
+    cells = search.cells
     found, values = np.empty(cells.shape[:2]), np.empty(len(cells))
 
     def work(first: int) -> int:
         chosen = slice(first, min(first + CELLS_AT_ONCE, len(cells)))
-        for k in range(chosen.start, chosen.stop):
-            found[k], values[k] = _minimum(potential, cells[k], points, starts)
+        found[chosen], values[chosen] = search.minima(chosen.start, chosen.stop)
         return chosen.stop - chosen.start
 
     with ThreadPoolExecutor(threads) as pool:

@@ -2,20 +2,117 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from enum import Enum
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from planners.cli.crystal_runs import Workplace, session
+import typer
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.potential_candidates import CellSearch
+    from planners.cli.crystal_runs import Session
 
 DEFAULT_SPREAD = 0.2
+
+
+class Method(str, Enum):
+    """How candidates are found."""
+
+    grid = "grid"
+    potential = "potential"
+
+
+Chosen = Annotated[
+    Method,
+    typer.Option(
+        help="grid: the free arrangements of the model's grid. potential: where a potential of "
+        "Gaussians is smallest in each cell of the grid, if that is free."
+    ),
+]
+Spread = Annotated[
+    float | None,
+    typer.Option(
+        metavar="M_B", help="Of the potential: m_b, the larger, the narrower; 0.2 without it."
+    ),
+]
+StepDeg = Annotated[
+    float | None,
+    typer.Option(
+        metavar="D",
+        help="Of the potential: width of the cells along angles, instead of the grid's steps.",
+    ),
+]
+Starts = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Of the potential: from how many points of a cell it goes down; without it from all "
+        "that may matter.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A method with its options.
+
+    Attributes:
+        method: grid or potential.
+        spread: m_b.
+        step_deg: width of the cells [degree].
+        starts: in each cell.
+
+    Raises:
+        CrystalError: an option belongs to the other method, or is out of its range.
+    """
+
+    method: Method
+    spread: float | None = None
+    step_deg: float | None = None
+    starts: int | None = None
+
+    def __post_init__(self) -> None:
+        from ellipsoid_planning.errors import CrystalError
+
+        options = {"spread": self.spread, "step-deg": self.step_deg, "starts": self.starts}
+        for name, value in options.items():
+            if value is None:
+                continue
+            if self.method is Method.grid:
+                raise CrystalError(
+                    f"--{name} {value}: it belongs to --method potential; add that or remove it"
+                )
+            if not (math.isfinite(value) and value > 0.0):
+                raise CrystalError(f"--{name}: expected a positive number, got {value}")
+
+    def settings(self, model: PackingModel) -> dict[str, Any]:
+        """What the pieces of work depend on, as data for JSON."""
+        from ellipsoid_planning.crystal.runs import piece_size
+
+        if self.method is Method.grid:
+            return {"method": "grid", "piece": piece_size(model.grid)}
+        given = {"spread": self.spread or DEFAULT_SPREAD, "starts": self.starts}
+        return {"method": "potential", "step_deg": self.step_deg, **given}
+
+    def search(self, model: PackingModel) -> CellSearch | None:
+        """The search of the potential's cells, None for a grid.
+
+        Raises:
+            CrystalError: the grid has no cells, or too many.
+        """
+        from ellipsoid_planning.crystal.potential_runs import cell_search
+
+        if self.method is Method.grid:
+            return None
+        step = None if self.step_deg is None else math.radians(self.step_deg)
+        return cell_search(model, self.spread or DEFAULT_SPREAD, step, self.starts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +157,41 @@ class Candidates:
         return given
 
 
-def by_grid(model: PackingModel, workplace: Workplace) -> Candidates:
+def by_grid(model: PackingModel, working: Session) -> Candidates:
     """The free arrangements of the grid, ascending."""
-    from ellipsoid_planning.crystal.run_store import run_settings
-    from ellipsoid_planning.crystal.runs import FreeArrangements, piece_size, search_pieces
+    import numpy as np
 
-    size = piece_size(model.grid)
-    pieces = search_pieces(model.grid, size)
-    with session(workplace, lambda: run_settings(model, "pack", piece=size)) as working:
-        began = time.perf_counter()
-        title = f"Searching {model.grid.count:,} arrangements"
-        found = list(working.results(title, FreeArrangements(model), pieces))
-    numbers = np.concatenate(found)
-    return Candidates(model, model.grid.count, numbers, time.perf_counter() - began)
+    from ellipsoid_planning.crystal.runs import FreeArrangements, search_pieces
+
+    began = time.perf_counter()
+    title = f"Searching {model.grid.count:,} arrangements"
+    found = list(working.results(title, FreeArrangements(model), search_pieces(model.grid)))
+    return Candidates(model, model.grid.count, np.concatenate(found), time.perf_counter() - began)
+
+
+def by_potential(search: CellSearch, working: Session) -> Candidates:
+    """The free minima of the cells, smallest potential first."""
+    import numpy as np
+
+    from ellipsoid_planning.crystal.potential_runs import (
+        PotentialMinima,
+        candidates_of,
+        cell_pieces,
+    )
+
+    began = time.perf_counter()
+    count = len(search.cells)
+    results = working.results(
+        f"Minimising in {count:,} cells", PotentialMinima(search), cell_pieces(search)
+    )
+    found = candidates_of(results)
+    free = np.flatnonzero(found.free)
+    order = free[np.argsort(found.potentials[free], kind="stable")]
+    return Candidates(
+        search.model,
+        count,
+        order,
+        time.perf_counter() - began,
+        found.configurations[order],
+        found.potentials[order],
+    )

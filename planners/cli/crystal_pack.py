@@ -3,13 +3,33 @@
 from __future__ import annotations
 
 import time
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.crystal_runs import Cluster, Figure, Html, Jobs, Json, Model, Run, Workplace
+from planners.cli.crystal_candidates import (
+    Candidates,
+    Choice,
+    Chosen,
+    Method,
+    Spread,
+    Starts,
+    StepDeg,
+    by_grid,
+    by_potential,
+)
+from planners.cli.crystal_runs import (
+    Cluster,
+    Figure,
+    Html,
+    Jobs,
+    Json,
+    Model,
+    Run,
+    Workplace,
+    session,
+)
 from planners.cli.outputs import check_outputs
 from planners.cli.terminal import result_console, say
 
@@ -17,27 +37,13 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ellipsoid_planning.crystal.model import PackingModel
-    from planners.cli.crystal_candidates import Candidates
 
 FOUND, NOTHING_FREE = 0, 1
 
 
-class Method(str, Enum):
-    """How candidates are found."""
-
-    grid = "grid"
-    potential = "potential"
-
-
 def pack(
     model: Model,
-    method: Annotated[
-        Method,
-        typer.Option(
-            help="grid: which arrangements of the model's grid are free. potential: where a "
-            "potential of Gaussians is smallest in each cell of the grid, if that is free."
-        ),
-    ] = Method.grid,
+    method: Chosen = Method.grid,
     list_: Annotated[
         int, typer.Option("--list", metavar="N", min=0, help="Also print the first N of them.")
     ] = 0,
@@ -51,24 +57,9 @@ def pack(
     run: Run = None,
     jobs: Jobs = None,
     cluster: Cluster = None,
-    spread: Annotated[
-        float | None,
-        typer.Option(
-            metavar="M_B", help="Of the potential: m_b, the larger, the narrower; 0.2 without it."
-        ),
-    ] = None,
-    step_deg: Annotated[
-        float | None,
-        typer.Option(
-            metavar="D", help="Of the potential: width of the cells, instead of the grid's steps."
-        ),
-    ] = None,
-    starts: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N", help="Of the potential: starts of the minimisation in each cell; one."
-        ),
-    ] = None,
+    spread: Spread = None,
+    step_deg: StepDeg = None,
+    starts: Starts = None,
     json: Json = False,
     figure: Figure = None,
     html: Html = None,
@@ -95,13 +86,20 @@ def pack(
     ellipsoid-planning crystal pack MODEL.yaml --run big --cluster tcp://10.0.0.5:8786
     """
     from ellipsoid_planning.crystal.model import load_model
+    from ellipsoid_planning.crystal.run_store import run_settings
     from planners.cli.crystal_output import arrangements, print_json, save_arrangements
 
     check_outputs(output=output, figure=figure, html=html)
     _check_suffixes(output, figure)
     began = time.perf_counter()
+    choice = Choice(method, spread, step_deg, starts)
     loaded = load_model(model)
-    found = _candidates(loaded, method, (spread, step_deg, starts), Workplace(run, cluster, jobs))
+    search = choice.search(loaded)
+    with session(
+        Workplace(run, cluster, jobs),
+        lambda: run_settings(loaded, "pack", **choice.settings(loaded)),
+    ) as working:
+        found = by_grid(loaded, working) if search is None else by_potential(search, working)
     result = _result(loaded, method, found, time.perf_counter() - began)
     listed = min(list_, len(found))
     if output is not None:
@@ -132,25 +130,6 @@ def _check_suffixes(output: Path | None, figure: Path | None) -> None:
         from planners.view.figures import check_format
 
         check_format(figure)
-
-
-def _candidates(
-    model: PackingModel,
-    method: Method,
-    options: tuple[float | None, float | None, int | None],
-    workplace: Workplace,
-) -> Candidates:
-    from ellipsoid_planning.errors import CrystalError
-    from planners.cli import crystal_candidates as candidates
-
-    if method is Method.grid:
-        for name, value in zip(("spread", "step-deg", "starts"), options, strict=True):
-            if value is not None:
-                raise CrystalError(
-                    f"--{name} {value}: it belongs to --method potential; add that or remove it"
-                )
-        return candidates.by_grid(model, workplace)
-    raise CrystalError("--method potential: it is not built in yet; take --method grid")
 
 
 def _result(

@@ -10,12 +10,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from planners.cli.crystal_candidates import (
+    Choice,
+    Chosen,
+    Method,
+    Spread,
+    Starts,
+    StepDeg,
+    by_potential,
+)
 from planners.cli.crystal_runs import Cluster, Jobs, Json, Model, Run, Session, Workplace, session
 from planners.cli.outputs import check_outputs
 from planners.cli.progress import progress
 from planners.cli.terminal import wide_console
 
 if TYPE_CHECKING:
+    from ellipsoid_planning.crystal.potential_candidates import CellSearch
     from ellipsoid_planning.crystal.ranking import Ranking
     from planners.cli.crystal_data import Data
     from planners.crystal.parameters import Refinement
@@ -37,11 +47,13 @@ class Phased:
     """All that a run has found.
 
     Attributes:
+        looked_at: how many arrangements, or cells, were looked at.
         ranking: the candidates, with how many arrangements are free.
         outcome: of their refinement, None if nothing is free.
         search_seconds: time of search and ranking [s].
     """
 
+    looked_at: int
     ranking: Ranking
     outcome: PhasingOutcome | None
     search_seconds: float
@@ -57,8 +69,9 @@ def phase(
             "name, or measured magnitudes.",
         ),
     ],
+    method: Chosen = Method.grid,
     best: Annotated[
-        int, typer.Option(metavar="N", min=1, help="How many candidates of the grid are refined.")
+        int, typer.Option(metavar="N", min=1, help="How many candidates are refined.")
     ] = 10,
     threshold: Annotated[
         float | None,
@@ -83,6 +96,9 @@ def phase(
         bool,
         typer.Option("--skip-missing", help="Leave reflections of DATA without a value out."),
     ] = False,
+    spread: Spread = None,
+    step_deg: StepDeg = None,
+    starts: Starts = None,
     run: Run = None,
     jobs: Jobs = None,
     cluster: Cluster = None,
@@ -138,10 +154,11 @@ def phase(
     check_outputs(output=output, figure=figure, trends=trends, html=html)
     _check_pictures(figure, trends)
     began = time.perf_counter()
+    choice = Choice(method, spread, step_deg, starts)
     loaded = load_model(model)
     refinement = Refinement(method=refine.value, threshold=threshold, seed=seed)
     data = load_data(target, loaded, column, skip_missing=skip_missing)
-    phased = _phased(data, best, refinement, Workplace(run, cluster, jobs))
+    phased = _phased(data, best, choice, refinement, Workplace(run, cluster, jobs))
     result = report.result(data, phased, refinement, time.perf_counter() - began)
     if output is not None:
         save_json(result, output)
@@ -161,32 +178,45 @@ def _check_pictures(*files: Path | None) -> None:
             check_format(file)
 
 
-def _phased(data: Data, best: int, refinement: Refinement, workplace: Workplace) -> Phased:
+def _phased(
+    data: Data, best: int, choice: Choice, refinement: Refinement, workplace: Workplace
+) -> Phased:
     """Search, rank and refine, with what an earlier session of the run has done."""
-    from ellipsoid_planning.crystal.ranking_runs import (
-        RankedArrangements,
-        ranking_of,
-        target_digest,
-    )
+    from ellipsoid_planning.crystal.ranking_runs import target_digest
     from ellipsoid_planning.crystal.run_store import run_settings
-    from ellipsoid_planning.crystal.runs import piece_size, search_pieces
 
     model = data.cost.model
-    size = piece_size(model.grid)
+    search = choice.search(model)
 
     def settings() -> dict[str, Any]:
         wanted = {"target": target_digest(data.cost), "refinement": vars(refinement)}
-        return run_settings(model, "phase", piece=size, best=best, **wanted)
+        return run_settings(model, "phase", best=best, **wanted, **choice.settings(model))
 
     with session(workplace, settings) as working:
         began = time.perf_counter()
-        title = f"Searching and ranking {model.grid.count:,} arrangements"
-        pieces = search_pieces(model.grid, size, stage="ranked")
-        results = working.results(title, RankedArrangements(data.cost, best), pieces)
-        ranking = ranking_of(model, results, best)
+        looked_at, ranking = _ranked(data, best, search, working)
         seconds = time.perf_counter() - began
         outcome = _refined(data, ranking, refinement, working) if len(ranking) else None
-    return Phased(ranking, outcome, seconds)
+    return Phased(looked_at, ranking, outcome, seconds)
+
+
+def _ranked(
+    data: Data, best: int, search: CellSearch | None, working: Session
+) -> tuple[int, Ranking]:
+    """How many arrangements were looked at, and the best that are free."""
+    from ellipsoid_planning.crystal.ranking import rank_listed
+    from ellipsoid_planning.crystal.ranking_runs import RankedArrangements, ranking_of
+    from ellipsoid_planning.crystal.runs import search_pieces
+
+    model = data.cost.model
+    if search is not None:
+        found = by_potential(search, working)
+        every = slice(0, len(found))
+        return found.looked_at, rank_listed(data.cost, found.configurations(every), best)
+    title = f"Searching and ranking {model.grid.count:,} arrangements"
+    pieces = search_pieces(model.grid, stage="ranked")
+    results = working.results(title, RankedArrangements(data.cost, best), pieces)
+    return model.grid.count, ranking_of(model, results, best)
 
 
 def _refined(

@@ -32,7 +32,7 @@ def result(data: Data, phased: Phased, refinement: Refinement, seconds: float) -
         "group": model.group.name,
         "target": data.to_dict(),
         "found": outcome is not None and outcome.solved,
-        "configurations": model.grid.count,
+        "configurations": phased.looked_at,
         "free": phased.ranking.looked_at,
         "keys": list(model.keys),
         "threshold": refinement.cost_share * data.cost.norm,

@@ -98,7 +98,7 @@ class PackingModelBlock(Block):
     group: StrictStr | int
     cell: CellBlock
     molecule: RobotBlock
-    packing: PackingBlock = PackingBlock()
+    packing: PackingBlock = PackingBlock(overlap=0.0)
     search: SearchBlock
     diffraction: DiffractionBlock
 

@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-PROGRAM = """
+PLANNING = """
 import numpy as np
 from ellipsoid_planning.cspace.sampling import FreeIntervalSampling
 from ellipsoid_planning.roadmap.highway import HighwayRoadmap
@@ -12,10 +12,33 @@ for name in ("rabbit-3d-open", "chain-18dof"):
     HighwayRoadmap(load_scenario(name).cspace()).compile_kernels()
 FreeIntervalSampling(load_scenario("rabbit-3d-open").cspace(), 1).sample(np.empty(7))
 """
+CRYSTALS = """
+from ellipsoid_planning.crystal.collisions import GridSearch
+from ellipsoid_planning.crystal.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.magnitudes import simulate
+from ellipsoid_planning.crystal.model import load_model, load_target
+from ellipsoid_planning.crystal.potential import GaussianPotential
+from ellipsoid_planning.crystal.ranking import rank
+for name in ("rabbit-plane", "rabbit-p1"):
+    model = load_model(name)
+    target = load_target(name + "-target", model)
+    model.is_free(target)
+    cost = FourierCost(model, simulate(model, target))
+    cost.value(target), cost.residuals_and_jacobian(target)
+    search = GridSearch(model)
+    rank(search, search.free(0, 1), cost)
+    GaussianPotential(model, GaussianMixture(3.2)).value_and_gradient(target)
+"""
 
 
 def pytest_sessionstart(session):
     several = session.config.getoption("numprocesses", None)
     if several and not hasattr(session.config, "workerinput"):
-        # If it fails, some test will say why.
-        subprocess.run([sys.executable, "-c", PROGRAM], check=False, capture_output=True)
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        began = [
+            subprocess.Popen([sys.executable, "-c", program], **quiet)
+            for program in (PLANNING, CRYSTALS)
+        ]
+        for process in began:
+            process.wait()  # if it fails, some test will say why

@@ -42,6 +42,9 @@ class Ways(str, Enum):
     rrt = "rrt"
 
 
+CANDIDATES = {Ways.both: 50, Ways.polish: 50, Ways.rrt: 10}
+
+
 @dataclass(frozen=True, eq=False)
 class Phased:
     """All that a run has found.
@@ -71,8 +74,14 @@ def phase(
     ],
     method: Chosen = Method.grid,
     best: Annotated[
-        int, typer.Option(metavar="N", min=1, help="How many candidates are refined.")
-    ] = 10,
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="How many candidates are refined, if need be: 50 without it, 10 with "
+            "[bold]--refine rrt[/bold]; trees are grown for the best 10 of them only.",
+        ),
+    ] = None,
     threshold: Annotated[
         float | None,
         typer.Option(
@@ -158,7 +167,9 @@ def phase(
     loaded = load_model(model)
     refinement = Refinement(method=refine.value, threshold=threshold, seed=seed)
     data = load_data(target, loaded, column, skip_missing=skip_missing)
-    phased = _phased(data, best, choice, refinement, Workplace(run, cluster, jobs))
+    phased = _phased(
+        data, best or CANDIDATES[refine], choice, refinement, Workplace(run, cluster, jobs)
+    )
     result = report.result(data, phased, refinement, time.perf_counter() - began)
     if output is not None:
         save_json(result, output)
@@ -227,8 +238,9 @@ def _refined(
     from planners.crystal.phasing import phase_candidates
 
     refiner = KeptRefinements(working.store or Nowhere())
-    passes = 2 if refinement.method == "both" else 1
-    with progress(f"Refining {len(ranking)} candidates", passes * len(ranking)) as update:
+    count = len(ranking)
+    trees = min(count, refinement.trees) if refinement.method == "both" else 0
+    with progress(f"Refining {count} candidates", count + trees) as update:
 
         def on_progress(_: int, __: int, cost: float) -> None:
             update(f"lowest cost {cost / data.cost.norm:.3g} of an empty cell's", 1)

@@ -87,6 +87,10 @@ def _errors(data: Data, configuration: NDArray[np.float64]) -> dict[str, Any]:
     return {"errors": errors.to_dict()}
 
 
+SHOWN = 10
+"""Candidates in tables and pictures."""
+
+
 def tables(data: Data, phased: Phased, result: dict[str, Any]) -> list[Table]:
     """The candidates, and the arrangement that was found."""
     from planners.view.crystal_tables import candidates_table
@@ -95,13 +99,10 @@ def tables(data: Data, phased: Phased, result: dict[str, Any]) -> list[Table]:
     found = [_summary(data, result)]
     if len(given):
         title = f"{data.cost.model.name}: candidates"
-        columns = _columns(data, given.configurations)
-        found.insert(
-            0,
-            candidates_table(
-                data.cost.model, given.configurations, given.costs, data.target, columns, title
-            ),
-        )
+        first, costs = given.configurations[:SHOWN], given.costs[:SHOWN]
+        columns = _columns(data, first)
+        table = candidates_table(data.cost.model, first, costs, data.target, columns, title)
+        found.insert(0, table)
     return found
 
 
@@ -176,11 +177,11 @@ def _candidates_picture(data: Data, phased: Phased, file: Path) -> bytes:
     with working("Drawing the candidates"):
         return picture_of_candidates(
             data.cost.model,
-            given.configurations,
-            given.costs,
+            given.configurations[:SHOWN],
+            given.costs[:SHOWN],
             file.suffix[1:].lower(),
             data.target,
-            _columns(data, given.configurations),
+            _columns(data, given.configurations[:SHOWN]),
         )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import typer
 
 from planners.cli.crystal_fit import fit
-from planners.cli.crystal_fit import fit
 from planners.cli.crystal_models import models
 from planners.cli.crystal_pack import pack
 from planners.cli.crystal_phase import phase

@@ -59,11 +59,12 @@ def polish(
         evaluations: of the magnitudes and their derivatives, at most.
 
     Raises:
-        CrystalError: if a size is wrong, or a reach negative.
+        CrystalError: if a size is wrong, the start not finite, or a reach negative.
     """
     from scipy.optimize import least_squares
 
     first = np.array(start, dtype=float)
+    cost.structure.checked(first[None])
     sizes = np.maximum(checked_reach(cost.model, reach, first), FIXED)
     task = _Task(cost)
     found = least_squares(

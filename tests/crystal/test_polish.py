@@ -82,6 +82,13 @@ def test_a_wrong_reach_is_refused(reach):
         polish(cost, target, reach)
 
 
+@pytest.mark.parametrize("start", [[0.0, 0.0], [0.0, np.nan, 0.0]])
+def test_a_wrong_start_is_refused(start):
+    _, _, cost = case("rabbit-plane")
+    with pytest.raises(CrystalError, match="3 "):
+        polish(cost, start)
+
+
 def test_a_trend_has_the_improvements_and_their_errors():
     model, target, _ = case("rabbit-plane")
     trace = Trace()

@@ -33,6 +33,7 @@ EXPECTATIONS: Mapping[str, tuple[str, str]] = {
     "greater_than_equal": ("a number that is not negative", "give zero or more"),
     "string_too_short": ("text that is not empty", "give it a name"),
     "string_type": ("text", "put it in quotes"),
+    "group": ("a group's symbol or number", "write group: P212121, say"),
     "bool_type": ("true or false", "write one of them without quotes"),
     "list_type": ("a list", "write it in brackets, [..., ...], or as lines that start with '-'"),
     "model_type": ("a mapping", "write it as key: value pairs"),
@@ -108,6 +109,8 @@ def _length_problem(path: Path, context: Mapping[str, Any], length: int) -> str:
         return f"expected at least one {BODILESS[path[-1]]}, got none; give the robot a body"
     if "ignore_self_collision" in path:
         return f"expected pairs of two links, got {length}; write [[one, other], ...]"
+    if "max_length" in context:
+        return f"expected at most {context['max_length']} numbers, got {length}"
     return f"expected {context.get('min_length')} numbers, got {length}"
 
 

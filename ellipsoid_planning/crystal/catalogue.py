@@ -15,7 +15,7 @@ from ellipsoid_planning.errors import CrystalError
 
 TYPES = 230
 PREFERENCE = "2H"  # the second origin, at an inversion centre, and hexagonal axes
-SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆", "0123456", "_{}$")
+SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆\N{MINUS SIGN}", "0123456-", "_{}$()")
 NUMBER = re.compile("[+-]?[0-9]{1,9}")
 LONGEST = 40  # letters of a symbol that messages repeat
 OVERBAR = re.compile("(.)[\u0304\u0305]")
@@ -25,10 +25,10 @@ def space_group(name: str | int) -> SpaceGroup:
     """The group of a Hermann-Mauguin symbol or number.
 
     Symbols are read with or without spaces, subscripts or underscores: ``P212121``,
-    ``P 21 21 21``, ``P2_12_12_1``. A colon chooses among tabulated settings: ``Fd-3m:1``,
-    ``R32:R``; without it, and for numbers, the setting of the International Tables is taken, with
-    the origin at an inversion centre and hexagonal axes. A small letter at the front means the
-    plane: ``p4``, ``p3m1``.
+    ``P 21 21 21``, ``P2_12_12_1``, ``P2(1)2(1)2(1)``. A colon chooses among tabulated settings:
+    ``Fd-3m:1``, ``R32:R``; without it, and for numbers, the setting of the International Tables is
+    taken, with the origin at an inversion centre and hexagonal axes. A small letter at the front
+    means the plane: ``p4``, ``p3m1``.
 
     Raises:
         CrystalError: there is no such group; suggests some. Or gemmi is missing.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +20,11 @@ Integers = NDArray[np.int64]
 
 # Room for this many arrangements is made at a time, or for those of one base pose.
 FOUND_AT_ONCE = 1 << 18
+
+
+FARTHEST = 100.0  # cells that a shift may go beyond its range
+MOST_POSES = 10**6  # of a limb: a table has them all
+MOST_COMBINATIONS = 10**8  # of all joints' values, of pairs of limbs' poses
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +51,12 @@ class GridSearch:
 
     @cached_property
     def tables(self) -> tuple[Integers, Array, Array, Integers, Integers, Integers]:
-        """limbs, shapes, placements, strides, levels and counts for the kernel."""
+        """limbs, shapes, placements, strides, levels and counts for the kernel.
+
+        Raises:
+            CrystalError: if the joints have so many values together that no table has room.
+        """
+        self._check_room()
         counts = self.model.grid.joint_counts
         strides = np.zeros((len(self.limb_frames), len(counts)), np.int64)
         limbs = np.zeros((len(self.limb_frames), 5), np.int64)
@@ -73,6 +85,19 @@ class GridSearch:
             levels,
             np.array(counts, np.int64),
         )
+
+    def _check_room(self) -> None:
+        counts = self.model.grid.joint_counts
+        poses = [math.prod(counts[j] for j in self.chain(frame)) for frame in self.limb_frames]
+        pairs = sum(a * b for a, b in itertools.combinations(poses[1:], 2))
+        combinations = self.model.grid.joint_count
+        if max(poses) > MOST_POSES or max(combinations, pairs) > MOST_COMBINATIONS:
+            raise CrystalError(
+                f"{self.model.name}: the joints have {combinations:.3g} combinations of values, "
+                f"a limb has {max(poses):.3g} poses, and two limbs together {pairs:.3g}; expected "
+                f"at most {MOST_POSES:.0e} poses and {MOST_COMBINATIONS:.0e} combinations: choose "
+                "larger steps for the joints"
+            )
 
     def _placements(self, chain: list[int], frame: int) -> Array:
         """(poses, FRAME) of a frame against the base for all values of its chain."""
@@ -162,6 +187,21 @@ def watched_pairs(model: PackingModel) -> list[tuple[int, int]]:
     ]
 
 
+def _check_shifts(model: PackingModel, configurations: Array) -> None:
+    """Refuse shifts so far beyond the grid's ranges that rounding would decide."""
+    edge = float(model.cell.lengths.max())
+    for place, (range_, of) in enumerate(
+        zip(model.grid.ranges, model.molecule.coordinates, strict=True)
+    ):
+        most = max(abs(range_.lower), abs(range_.upper)) + FARTHEST * edge
+        values = np.abs(configurations[:, place]) if not of.turns else np.zeros(0)
+        if np.any(values > most):
+            raise CrystalError(
+                f"{model.name}: {of.name} = {values.max():.6g} is far from the cell; expected at "
+                f"most {most:.6g}: take lattice vectors off"
+            )
+
+
 def _watched(model: PackingModel) -> NDArray[np.bool_]:
     """(P, P), whether :func:`watched_pairs` has the pair [i, j], i < j."""
     count = len(model.molecule.parts)
@@ -200,6 +240,7 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
         )
     if not np.all(np.isfinite(configurations)):
         raise CrystalError(f"{model.name}: expected configurations of finite numbers")
+    _check_shifts(model, configurations)
     shapes = _shape_rows(model, np.arange(len(whole.parts)))
     free = np.empty(len(configurations), bool)
     packing.arrangements_free(

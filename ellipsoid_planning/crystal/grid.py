@@ -48,7 +48,9 @@ class ArrangementGrid:
     @property
     def base_poses(self) -> int:
         """N, the number of poses of the base."""
-        return len(self.bases)
+        ranges = self.ranges[: self.base_count if self.turns is None else self.shift_count]
+        turns = 1 if self.turns is None else len(self.turns)
+        return turns * math.prod(len(r.values) for r in ranges)
 
     @property
     def joint_values(self) -> tuple[Array, ...]:

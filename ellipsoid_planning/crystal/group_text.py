@@ -75,7 +75,7 @@ def print_group(group: SpaceGroup) -> str:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")  # editors may begin it with a mark
     except OSError as error:
         problem = f"cannot read the file of operations: {error.strerror}"
         raise ScenarioError(problem, file=str(path)) from None

@@ -24,6 +24,9 @@ from ellipsoid_planning.scenario_origin import Origin, Path
 from ellipsoid_planning.scenario_problems import scenario_error, shown
 from ellipsoid_planning.scenario_robot import robot_of
 
+MOST_CELLS = 1e7  # that a part reaches through; usual are some tens
+LEAST_ACCURACY = 1e-4  # of distances, in the size of the largest part
+
 
 def model_of(document: Any, origin: Origin | None = None) -> PackingModel:
     """Return the packing model of a document in the format.
@@ -90,7 +93,8 @@ class _Builder:
         self._at(("cell",), group.check_cell, cell)
         molecule = self._molecule(cell)
         self._check_size(molecule, cell, group.order)
-        return PackingModel(
+        self._check_extent(molecule, cell)
+        model = PackingModel(
             block.name,
             group,
             cell,
@@ -103,6 +107,8 @@ class _Builder:
             document,
             self._origin,
         )
+        self._check_rounding(model)
+        return model
 
     def _at(self, path: Path, function: Any, *arguments: Any) -> Any:
         """Call a function; its complaint is about the entry at `path`."""
@@ -122,6 +128,11 @@ class _Builder:
         search = self._block.search
         robot = robot_of(self._entries, self._block.molecule, Pose.model_validate({}))
         if isinstance(robot, RigidRobot):
+            if not robot.rotates:
+                raise self._origin.error(
+                    ("molecule", "rotates"),
+                    "the search says what moves; remove this, and leave search.orientation out",
+                )
             robot = ArticulatedRobot((Link("molecule", robot.parts),), ())
         if robot.base != FREE_BASE:
             raise self._origin.error(
@@ -135,7 +146,22 @@ class _Builder:
             raise self._origin.error(("search", "position", "z"), "there is no z in the plane")
         turns = "" if search.orientation is None else search.orientation.euler
         densities = self._block.diffraction.densities
-        return self._at(("molecule",), molecule_of, robot, cell.basis, shifts, turns, densities)
+        molecule: Molecule = self._at(
+            ("molecule",), molecule_of, robot, cell.basis, shifts, turns, densities
+        )
+        self._check_names(molecule)
+        return molecule
+
+    def _check_names(self, molecule: Molecule) -> None:
+        keys = [coordinate.key for coordinate in molecule.coordinates]
+        joints = [joint.name for joint in molecule.robot.joints]
+        for coordinate in molecule.coordinates[molecule.base_count :]:
+            if keys.count(coordinate.key) > 1:
+                raise self._origin.error(
+                    ("molecule", "joints", joints.index(coordinate.name), "name"),
+                    f"{coordinate.key} is a coordinate of the molecule's base already; rename this "
+                    "joint",
+                )
 
     def _check_densities(self, robot: ArticulatedRobot) -> None:
         names = {link.name for link in robot.links}
@@ -154,4 +180,28 @@ class _Builder:
                 f"the largest part of the molecule has a volume of {largest:.6g}, and {copies} "
                 f"copies of it do not fit into the cell's {cell.volume:.6g}; enlarge the cell or "
                 "shrink the molecule",
+            )
+
+    def _check_extent(self, molecule: Molecule, cell: UnitCell) -> None:
+        """Refuse parts that reach through so many cells that looking at all copies has no end."""
+        reaches = np.linalg.norm(cell.reciprocal, axis=0)
+        longest = max(float(part.semi_axes.max()) for part in molecule.robot.parts)
+        cells = float(np.prod(1.0 + 4.0 * longest * reaches))
+        if not cells <= MOST_CELLS:
+            raise self._origin.error(
+                ("cell",),
+                f"parts of the molecule are up to {2.0 * longest:.6g} long, and that near there "
+                f"are {cells:.3g} cells; expected at most {MOST_CELLS:.0e}: enlarge the cell, or "
+                "shrink the molecule",
+            )
+
+    def _check_rounding(self, model: PackingModel) -> None:
+        with np.errstate(over="ignore"):
+            rounding = model.required + model.overlap
+        length = max(float(part.semi_axes.max()) for part in model.parts)
+        if not rounding <= LEAST_ACCURACY * length:
+            raise self._origin.error(
+                ("molecule",),
+                f"the molecule's parts, {length:.3g} in size, are so far from its origin that "
+                f"distances are rounded by {rounding:.3g}; move the origin into the molecule",
             )

@@ -5,13 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, StrictStr
+from pydantic import BeforeValidator, Field, StrictStr, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
 from ellipsoid_planning.scenario_blocks import Block, Name, NotNegative, Number, Positive
 from ellipsoid_planning.scenario_format import whole
 from ellipsoid_planning.scenario_format_robot import RobotBlock
 
 Lengths = Annotated[list[Positive], Field(min_length=2, max_length=3)]
+
+
+GROUP = {"anyOf": [{"type": "string"}, {"type": "integer"}]}
+
+
+def group_name(value: Any) -> str:
+    """A group's symbol or number as text; numbers such as 19.0 and true are none."""
+    if isinstance(value, str) or (isinstance(value, int) and not isinstance(value, bool)):
+        return str(value)
+    raise PydanticCustomError("group", "a group's symbol such as P212121, or its number")
 
 
 class CellBlock(Block):
@@ -58,7 +69,7 @@ class PackingBlock(Block):
     """What counts as a packing."""
 
     overlap: NotNegative = Field(
-        0.0, description="how deep parts may reach into each other in a free arrangement"
+        default=0.0, description="how deep parts may reach into each other in a free arrangement"
     )
 
 
@@ -66,7 +77,8 @@ class SearchBlock(Block):
     """The grid of arrangements; what is not named does not move (joints: stand at zero)."""
 
     slack: NotNegative = Field(
-        0.0, description="how much deeper at the grid's nodes, which only lie near free ones"
+        default=0.0,
+        description="how much deeper at the grid's nodes, which only lie near free ones",
     )
     position: PositionBlock = PositionBlock()
     orientation: OrientationBlock | None = None
@@ -95,7 +107,7 @@ class PackingModelBlock(Block):
     name: Name
     description: StrictStr = ""
     dimension: Annotated[Literal[2, 3], BeforeValidator(whole)]
-    group: StrictStr | int
+    group: Annotated[str, BeforeValidator(group_name), WithJsonSchema(GROUP)]
     cell: CellBlock
     molecule: RobotBlock
     packing: PackingBlock = PackingBlock(overlap=0.0)

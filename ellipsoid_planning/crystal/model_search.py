@@ -24,6 +24,9 @@ DEGREE = math.pi / 180.0
 ORIENTATION: Path = ("search", "orientation")
 ANGLE_KEYS = ("yaw_deg", *(f"{name}_deg" for name in EULER_NAMES))
 
+MOST_POSES = 10**7  # of the base: a table has them all
+MOST_ARRANGEMENTS = 10**18  # their numbers are of 64 bits
+
 
 @dataclass(frozen=True, eq=False)
 class SearchGrid:
@@ -43,7 +46,15 @@ class SearchGrid:
         shifts = self._shifts()
         turned, turns = self._turns()
         ranges = (*shifts, *turned, *self._joints())
-        return ArrangementGrid(ranges, self.molecule.base_count, len(shifts), turns)
+        grid = ArrangementGrid(ranges, self.molecule.base_count, len(shifts), turns)
+        if grid.base_poses > MOST_POSES or grid.count > MOST_ARRANGEMENTS:
+            raise self.origin.error(
+                ("search",),
+                f"expected at most {MOST_POSES:.0e} poses of the molecule's base and "
+                f"{MOST_ARRANGEMENTS:.0e} arrangements, got {grid.base_poses:.3g} and "
+                f"{grid.count:.3g}; choose larger steps",
+            )
+        return grid
 
     def _shifts(self) -> list[Range]:
         ranges = []

@@ -11,6 +11,8 @@ from ellipsoid_planning.errors import CrystalError
 
 Array = NDArray[np.float64]
 
+MOST = 10**7  # values of one range; a search never needs as many
+
 # A step that fits the range but for this share of it, fits: 30° into 180° in radians, say.
 FITS = 1e-6
 
@@ -40,6 +42,11 @@ class Range:
         if not lower < upper:
             raise CrystalError(
                 f"expected lower < upper, got {lower:g} and {upper:g}; exchange or correct them"
+            )
+        if not (upper - lower) / step <= MOST:
+            raise CrystalError(
+                f"expected at most {MOST} steps, got {(upper - lower) / step:.3g}; choose a larger "
+                f"step than {step:g}"
             )
         count = round((upper - lower) / step)
         if count < 1 or abs(count * step - (upper - lower)) > FITS * (upper - lower):

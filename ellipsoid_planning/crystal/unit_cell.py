@@ -14,6 +14,7 @@ from ellipsoid_planning.errors import CrystalError
 LENGTHS = ("a", "b", "c")
 ANGLES = ("alpha", "beta", "gamma")
 EXACT_COSINES = {60.0: 0.5, 90.0: 0.0, 120.0: -0.5}  # so that these cells have exact zeros
+LONGEST, SHORTEST = 1e100, 1e-100  # so that volumes and squares are numbers
 FLATNESS = 1e-9  # a cell's volume over the product of its edges, below which it is no cell
 
 
@@ -116,6 +117,11 @@ def _checked_lengths(lengths: ArrayLike) -> NDArray[np.float64]:
     for name, size in zip(LENGTHS, sizes.tolist(), strict=False):
         if not (math.isfinite(size) and size > 0.0):
             raise CrystalError(f"unit cell: expected a positive length {name}, got {size:g}")
+        if not SHORTEST <= size <= LONGEST:
+            raise CrystalError(
+                f"unit cell: expected a length {name} from {SHORTEST:g} to {LONGEST:g}, got "
+                f"{size:g}; choose another unit"
+            )
     return sizes
 
 

@@ -91,3 +91,9 @@ def test_mixed_dimensions_in_python():
 
     with pytest.raises(CrystalError, match="operation 2"):
         SpaceGroup("odd", None, (Operation.identity(3), Operation.identity(2)))
+
+
+def test_files_with_a_byte_order_mark_and_any_line_ends(tmp_path):
+    file = tmp_path / "operations.txt"
+    file.write_bytes(b"\xef\xbb\xbf" + THESIS.replace("\n", "\r\n").encode())
+    assert space_group_from_text(file).operations == space_group("P212121").operations

@@ -11,9 +11,10 @@ from ellipsoid_planning.crystal.model_format import packing_model_schema
 from ellipsoid_planning.crystal.ranges import Range
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 from ellipsoid_planning.scenario_files import parse_document
-from tests.crystal.packings import model_from
+from tests.crystal.packings import model_from, one_body_text
 
 P1 = bundled_models()["rabbit-p1"].read_text(encoding="utf-8")
+ONE_BODY_TEXT = one_body_text("P1", "{lengths: [9, 9, 9]}", [1.0, 1.0, 1.0])
 PLANE = bundled_models()["rabbit-plane"].read_text(encoding="utf-8")
 
 
@@ -106,6 +107,20 @@ SPATIAL = [
         "only a grid",
     ),
     ("orientation:\n", "orientation:\n    euler: ZZX\n", "molecule", "three Euler axes"),
+    ("group: P1", "group: true", "group", "symbol or number, got true"),
+    ("group: P1", "group: 19.0", "group", "symbol or number, got 19.0"),
+    ("[14, 14, 14]", "[14, 14, 14, 14]", "cell.lengths", "at most 3 numbers, got 4"),
+    ("[14, 14, 14]", "[14, 1e200, 14]", "cell", "length b from 1e-100 to"),
+    (
+        "step: 10}\n    beta",
+        "step: 1e-300}\n    beta",
+        "search.orientation.alpha_deg",
+        "larger step",
+    ),
+    ("step: 10}\n    beta", "step: 0.0001}\n    beta", "search", "larger steps"),
+    ("semi_axes: [6, 6, 8]", "semi_axes: [1e-6, 1e-6, 8e6]", "cell", "long.*cells"),
+    ("position: [0, 0, 8]", "position: [0, 0, 1e300]", "molecule", "far from its origin"),
+    ("name: left_roll\n      ", "name: alpha\n      ", "molecule.joints[0].name", "rename this"),
 ]
 
 
@@ -118,6 +133,13 @@ def test_what_is_wrong_is_said_with_its_place(old, new, field, message):
     assert error.file == "model.yaml"
     assert error.line is not None
     assert re.search(message, str(error)), str(error)
+
+
+def test_a_molecule_that_may_not_turn_is_refused():
+    text = ONE_BODY_TEXT.replace("parts:", "rotates: false\n  parts:")
+    with pytest.raises(ScenarioError, match="the search says what moves") as raised:
+        model_from(text)
+    assert raised.value.field == "molecule.rotates"
 
 
 @pytest.mark.parametrize(

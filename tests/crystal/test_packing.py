@@ -204,6 +204,14 @@ def test_freedom_is_that_of_the_whole_crystal_not_of_where_it_stands():
     np.testing.assert_array_equal(model.are_free(arrangements), model.are_free(shifted))
 
 
+def test_shifts_far_from_the_cell_are_refused():
+    model = load_model("rabbit-p212121")
+    arrangement = model.grid.configurations([0])
+    arrangement[0, 0] = 1e18
+    with pytest.raises(CrystalError, match=r"x = 1e\+18 is far from the cell"):
+        model.are_free(arrangement)
+
+
 # --- grids --------------------------------------------------------------------------------------
 
 
@@ -269,6 +277,13 @@ def test_links_held_together_meet_others_each_by_its_own_rule():
 def test_arrangements_of_another_size_are_refused(wrong):
     with pytest.raises(CrystalError, match="expected configurations of"):
         load_model("rabbit-p1").are_free(wrong)
+
+
+def test_joints_with_more_values_than_there_is_room_for_are_refused():
+    text = CHAIN.format(group="P1", cell="{lengths: [9, 9, 9]}", step=3)
+    model = model_from(text.replace("wrist_deg: {step: 100}", "wrist_deg: {step: 0.0001}"))
+    with pytest.raises(CrystalError, match="larger steps for the joints"):
+        GridSearch(model).free(0, 1)
 
 
 def test_ranges_of_base_poses_add_up():

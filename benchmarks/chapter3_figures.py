@@ -28,12 +28,9 @@ from planners.view.crystal_cell import drawn_cell
 from planners.view.crystal_tables import TARGET, candidates_rows, error_columns
 from planners.view.figures_crystal import draw_cell
 from planners.view.figures_crystal_candidates import draw_candidates
+from planners.view.figures_crystal_map import draw_potential_map
 from planners.view.figures_crystal_molecule import draw_molecule
-from planners.view.figures_crystal_potential import (
-    draw_candidate_counts,
-    draw_mixture,
-    draw_potential_map,
-)
+from planners.view.figures_crystal_potential import draw_candidate_counts, draw_mixture
 from planners.view.figures_crystal_trends import draw_trends, trends_of
 
 SPREADS = np.array([0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4])

@@ -30,6 +30,9 @@ Integers = NDArray[np.int64]
 AT_A_TIME = 1 << 21
 """A piece of a search has about so many arrangements: a tenth of a second, a few megabytes."""
 
+POSES_AT_A_TIME = 1 << 14
+"""Nor more base poses: each costs some microseconds, more for a molecule of many parts."""
+
 MOST_PIECES = 4096
 """A larger search has larger pieces, not more."""
 
@@ -79,7 +82,8 @@ def piece_size(grid: ArrangementGrid) -> int:
 
     Whole turns, where they are not more: all shifts of one turn are ranked fastest together.
     """
-    share = max(AT_A_TIME, -(-grid.count // MOST_PIECES)) // grid.joint_count
+    share = min(AT_A_TIME // grid.joint_count, POSES_AT_A_TIME)
+    share = max(share, -(-grid.base_poses // MOST_PIECES))
     shifts = math.prod(len(r.values) for r in grid.ranges[: grid.shift_count])
     return max(1, share // shifts * shifts, share if share < shifts else 1)
 

@@ -45,7 +45,12 @@ class Data:
 
 
 def load_data(
-    name: str, model: PackingModel, column: str | None = None, *, skip_missing: bool = False
+    name: str,
+    model: PackingModel,
+    column: str | None = None,
+    *,
+    skip_missing: bool = False,
+    compare: str | None = None,
 ) -> Data:
     """The magnitudes of a file, or those of a target's arrangement.
 
@@ -54,6 +59,7 @@ def load_data(
         model: the packing model.
         column: of the file's magnitudes.
         skip_missing: leave reflections of the file without a usable value out.
+        compare: with a file, the target that errors are measured against, if it is known.
 
     Raises:
         EllipsoidPlanningError: something is wrong with them.
@@ -66,12 +72,14 @@ def load_data(
 
     if Path(name).suffix.lower() in DATA_SUFFIXES:
         magnitudes = read_magnitudes(name, model, column, skip_missing=skip_missing)
-        return Data(name, FourierCost(model, magnitudes, scaled=magnitudes.relative), None)
-    if column is not None or skip_missing:
-        option = "--skip-missing" if column is None else f"--column {column}"
-        raise CrystalError(
-            f"{option}: it belongs to a file of magnitudes, and the target {name} is an "
-            "arrangement; remove it"
-        )
+        known = None if compare is None else load_target(compare, model)
+        return Data(name, FourierCost(model, magnitudes, scaled=magnitudes.relative), known)
+    given = {"--column": column, "--compare": compare, "--skip-missing": skip_missing or None}
+    for option, value in given.items():
+        if value is not None:
+            raise CrystalError(
+                f"{option}: it belongs to a file of magnitudes, and the target {name} is an "
+                "arrangement; remove it"
+            )
     target = load_target(name, model)
     return Data(name, FourierCost(model, simulate(model, target)), target)

@@ -105,6 +105,13 @@ def phase(
         bool,
         typer.Option("--skip-missing", help="Leave reflections of DATA without a value out."),
     ] = False,
+    compare: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TARGET.yaml|NAME",
+            help="With DATA, the true arrangement if it is known, to measure errors against.",
+        ),
+    ] = None,
     spread: Spread = None,
     step_deg: StepDeg = None,
     starts: Starts = None,
@@ -166,7 +173,7 @@ def phase(
     choice = Choice(method, spread, step_deg, starts)
     loaded = load_model(model)
     refinement = Refinement(method=refine.value, threshold=threshold, seed=seed)
-    data = load_data(target, loaded, column, skip_missing=skip_missing)
+    data = load_data(target, loaded, column, skip_missing=skip_missing, compare=compare)
     phased = _phased(
         data, best or CANDIDATES[refine], choice, refinement, Workplace(run, cluster, jobs)
     )

@@ -25,7 +25,9 @@ def show(
     target: Annotated[
         str | None,
         typer.Option(
-            metavar="TARGET.yaml|NAME", help="The arrangement to look at, by file or bundled name."
+            metavar="TARGET.yaml|NAME|RESULT.json",
+            help="The arrangement to look at, by file or bundled name, or the one that "
+            "[bold]crystal phase[/bold] found.",
         ),
     ] = None,
     configuration: Annotated[
@@ -94,6 +96,8 @@ def _chosen(
     named = [f"--{name}" for name, value in given.items() if value is not None]
     if len(named) > 1:
         raise CrystalError(f"expected one arrangement, got {' and '.join(named)}; remove one")
+    if target is not None and target.lower().endswith(".json"):
+        return _found(model, target)
     if target is not None:
         return load_target(target, model)
     if configuration is not None:
@@ -105,6 +109,27 @@ def _chosen(
             f"--number {number}: expected the number of an arrangement, 0 to {model.grid.count - 1}"
         )
     return model.grid.configurations([number])[0]
+
+
+def _found(model: PackingModel, file: str) -> NDArray[np.float64]:
+    """The arrangement of a result."""
+    import json as json_format
+    from pathlib import Path
+
+    from ellipsoid_planning.errors import CrystalError, ResultError
+
+    try:
+        values = json_format.loads(Path(file).read_text(encoding="utf-8"))["arrangement"]
+        return model.configuration(values["configuration"])
+    except OSError as error:
+        raise ResultError(f"{file}: cannot read the file: {error.strerror}") from None
+    except CrystalError as error:
+        raise ResultError(f"{file}: it is another model's result: {error}") from None
+    except (ValueError, KeyError, TypeError):
+        raise ResultError(
+            f"{file}: expected a result that crystal phase wrote, with an arrangement; give one, "
+            "or a target's YAML file"
+        ) from None
 
 
 def _configuration(model: PackingModel, text: str) -> NDArray[np.float64]:

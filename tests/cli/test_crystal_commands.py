@@ -41,6 +41,13 @@ def test_models_and_schema():
     assert json.loads(inside("schema").stdout) == packing_model_schema()
 
 
+@pytest.mark.parametrize("command", ["models", "show", "pack", "phase", "schema"])
+def test_help_has_an_example(command):
+    done = inside(command, "--help")
+    assert done.returncode == 0
+    assert f"ellipsoid-planning crystal {command}" in done.stdout
+
+
 def test_show_says_what_meets():
     done = inside("show", "rabbit-p212121", "--number", 1000, "--json")
     assert done.returncode == 0, done.stderr
@@ -155,6 +162,7 @@ OPTIONS = {
     "number": (("show", "rabbit-plane", "--number", 216), ("--number 216", "0 to 215")),
     "key": (("show", "rabbit-plane", "--configuration", "yaw=3"), ("'yaw'", "yaw_deg")),
     "value": (("show", "rabbit-plane", "--configuration", "yaw_deg=x"), ("KEY=NUMBER",)),
+    "no result": (("show", "rabbit-plane", "--target", "no.json"), ("no.json", "cannot read")),
     "twice": (
         ("show", "rabbit-plane", "--number", 1, "--target", "rabbit-plane-target"),
         ("expected one arrangement",),

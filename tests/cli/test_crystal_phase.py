@@ -51,6 +51,10 @@ def test_the_target_is_found_again(tmp_path):
     assert result["arrangement"]["errors"]["MAE_deg"] < 1e-3
     assert result["arrangement"]["free"] is True
     assert all(file.stat().st_size > 1000 for file in drawn)
+    shown = CliRunner().invoke(
+        app, ["crystal", "show", "rabbit-plane", "--target", str(tmp_path / "result.json")]
+    )
+    assert "yaw_deg 100.82" in shown.stdout
     table = phase(*PLANE)
     assert "Found" in table.stdout
     assert "yes, proved" in table.stdout
@@ -114,6 +118,9 @@ def test_magnitudes_of_a_file(tmp_path):
     assert result["target"]["scaled"] is True
     assert result["target"]["configuration"] is None
     assert "errors" not in result["arrangement"]
+    known = ("--compare", "rabbit-p1-target")
+    result = found(phase("rabbit-p1", "--target", data, *known, "--threshold", 1e-3, "--json"))
+    assert result["arrangement"]["errors"]["MAE_deg"] < 0.5
     assert result["arrangement"]["cost_share"] < 1e-3
 
 
@@ -141,7 +148,8 @@ BAD = {
     "missing": (("--target", "missing.cif"), ("missing.cif", "1, 0, 0")),
     "negative": (("--target", "negative.cif"), ("negative.cif", "1, 0, 0", "-3")),
     "no data": (("--target", "no.mtz"), ("no.mtz",)),
-    "column": (("--target", "rabbit-p1-target", "--column", "F"), ("--column F",)),
+    "column": (("--target", "rabbit-p1-target", "--column", "F"), ("--column",)),
+    "compare": (("--target", "rabbit-p1-target", "--compare", "x"), ("--compare",)),
     "threshold": (("--target", "rabbit-p1-target", "--threshold", -1), ("threshold", "-1")),
     "picture": (("--target", "rabbit-p1-target", "--trends", "x.nope"), ("picture format",)),
     "same file": (

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -225,6 +225,12 @@ def _shape_rows(model: PackingModel, parts: Integers) -> Array:
     return rows
 
 
+@lru_cache(maxsize=8)
+def _tables_of(model: PackingModel) -> tuple[Array, NDArray[np.bool_]]:
+    """Shapes of all parts, and which pairs of them are watched: planners ask state by state."""
+    return _shape_rows(model, np.arange(len(model.molecule.parts))), _watched(model)
+
+
 def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.bool_]:
     """Whether each arrangement (m, K) is free; True is proved.
 
@@ -241,7 +247,7 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
     if not np.all(np.isfinite(configurations)):
         raise CrystalError(f"{model.name}: expected configurations of finite numbers")
     _check_shifts(model, configurations)
-    shapes = _shape_rows(model, np.arange(len(whole.parts)))
+    shapes, watched = _tables_of(model)
     free = np.empty(len(configurations), bool)
     packing.arrangements_free(
         whole.kinds,
@@ -250,7 +256,7 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
         whole.axes,
         whole.part_frames,
         shapes,
-        _watched(model),
+        watched,
         model.crystal,
         model.required,
         np.ascontiguousarray(configurations),

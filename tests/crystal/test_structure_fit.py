@@ -312,12 +312,12 @@ def test_euler_angles():
 
 
 def test_the_model_is_the_deposited_molecule(protein):
-    fit = fitted(protein, parts=4)
+    fit = fitted(protein, parts=8)
     made = FittedModel(fit, SearchSteps(), "protein", deepest_overlap(fit))
     model = model_of(made.model())
     pose = target_of(made.target(), Origin(), model)
     assert model.is_free(pose)
-    assert not model_of({**made.model(), "packing": {"overlap": 4.4}}).is_free(pose)
+    assert not model_of({**made.model(), "packing": {"overlap": 3.2}}).is_free(pose)
     placed = closest_contacts(model.molecule.bodies(pose), model.cell, model.group)
     deposited = closest_contacts(fit.ellipsoids, protein.cell, protein.group)
     np.testing.assert_allclose(
@@ -329,7 +329,7 @@ def test_the_model_is_the_deposited_molecule(protein):
     bundled = load_model("dd-peptidase")
     np.testing.assert_allclose(bundled.molecule.parts, model.molecule.parts, atol=2e-3)
     np.testing.assert_allclose(load_target("dd-peptidase-target", bundled), pose, atol=1e-4)
-    assert bundled.overlap == model.overlap == 4.5
+    assert bundled.overlap == model.overlap == 3.4
 
 
 def test_the_real_magnitudes_single_the_deposited_pose_out():
@@ -340,7 +340,7 @@ def test_the_real_magnitudes_single_the_deposited_pose_out():
     numbers = np.random.default_rng(4).choice(model.grid.count, 4000, replace=False)
     others = model.grid.configurations(numbers)
     others = others[model.are_free(others)]
-    assert len(others) > 150
+    assert len(others) > 60
     assert cost.value(target) < cost.values(others).min()
     assert cost.correlations(target[None])[0] > 0.9
 

@@ -77,7 +77,7 @@ def test_pack_counts_the_arrangements_of_the_thesis():
 @pytest.mark.parametrize("suffix", ["json", "csv"])
 def test_pack_writes_all_arrangements(suffix, tmp_path):
     file = tmp_path / f"free.{suffix}"
-    done = crystal("pack", "rabbit-plane", "--output", file)
+    done = inside("pack", "rabbit-plane", "--output", file)
     assert done.returncode == 0, done.stderr
     model = load_model("rabbit-plane")
     if suffix == "csv":
@@ -129,7 +129,7 @@ def test_a_killed_run_goes_on_and_a_changed_model_is_refused(tmp_path, monkeypat
     damaged = min(kept)
     damaged.write_bytes(damaged.read_bytes()[:-3])
     kept.pop(damaged)
-    done = run(*arguments, folder=tmp_path)
+    done = inside(*arguments[1:])
     assert json.loads(done.stdout)["free"] == free
     assert all(file.stat().st_mtime_ns == when for file, when in kept.items())
 

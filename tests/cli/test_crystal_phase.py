@@ -15,7 +15,6 @@ from planners.cli.main import app
 from tests.cli.command import COMMAND, refused
 
 PLANE = ("rabbit-plane", "--target", "rabbit-plane-target")
-P1 = ("rabbit-p1", "--target", "rabbit-p1-target")
 
 
 def phase(*arguments):
@@ -73,7 +72,7 @@ def test_potential_candidates_too():
 
 
 def test_a_killed_run_ends_as_an_unbroken_one(tmp_path):
-    arguments = (*P1, "--refine", "rrt", "--threshold", "1e-300", "--best", "3", "--json")
+    arguments = (*PLANE, "--refine", "rrt", "--threshold", "1e-300", "--best", "3", "--json")
     folder = tmp_path / "run"
     process = subprocess.Popen(
         [*COMMAND, "crystal", "phase", *arguments, "--run", folder],
@@ -96,13 +95,13 @@ def test_a_killed_run_ends_as_an_unbroken_one(tmp_path):
     assert without_times(broken) == without_times(whole)
     assert all(file.stat().st_mtime_ns == when for file, when in kept.items())
     assert refused(phase(*arguments, "--seed", 2, "--run", folder), "refinement.seed: 1 there")
-    other = ("rabbit-p1", "--target", folder.parent / "other.yaml", *arguments[3:])
+    other = ("rabbit-plane", "--target", folder.parent / "other.yaml", *arguments[3:])
     (tmp_path / "other.yaml").write_text(
         json.dumps(
             {
                 "format": 1,
                 "name": "other",
-                "configuration": dict.fromkeys(load_model("rabbit-p1").keys, 5.0),
+                "configuration": dict.fromkeys(load_model("rabbit-plane").keys, 5.0),
             }
         ),
         encoding="utf-8",

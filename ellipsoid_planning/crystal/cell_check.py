@@ -11,6 +11,7 @@ from ellipsoid_planning.crystal.unit_cell import ANGLES, LENGTHS, UnitCell
 from ellipsoid_planning.errors import CrystalError
 
 TOLERANCE = 1e-6  # relative; cells in files are rounded
+ROUNDING = 1e-15  # the same of numbers that are not
 FIXED_ANGLES = (60.0, 90.0, 120.0)
 
 
@@ -36,6 +37,21 @@ def check_cell(name: str, rotations: NDArray[np.int64], cell: UnitCell) -> None:
     raise CrystalError(
         f"{name}: {'; '.join(problems)}; change the cell or choose the group that it fits"
     )
+
+
+def fitted_cell(rotations: NDArray[np.int64], cell: UnitCell) -> UnitCell:
+    """The cell whose metric is the mean over the linear parts (m, n, n): they are its isometries.
+
+    A cell that fits already is given back; one that was rounded in a file changes in its last
+    digits.
+    """
+    metric = np.mean(rotations.transpose(0, 2, 1) @ cell.metric @ rotations, axis=0)
+    scale = np.sqrt(np.outer(np.diag(metric), np.diag(metric)))
+    if np.max(np.abs(metric - cell.metric) / scale) <= ROUNDING:
+        return cell
+    upright = np.linalg.cholesky(cell.metric).T
+    turn = cell.basis @ np.linalg.inv(upright)
+    return UnitCell(turn @ np.linalg.cholesky(metric).T)
 
 
 def _generic_cell(rotations: NDArray[np.int64]) -> UnitCell:

@@ -29,7 +29,8 @@ class PackingModel:
     Attributes:
         name, description: as in the file.
         group: the space group, or plane group.
-        cell: the unit cell, in the same unit of length as the molecule.
+        cell: the unit cell, in the same unit of length as the molecule; what was rounded in it
+            is corrected, so that the group keeps it exactly.
         molecule: the molecule, with its K coordinates.
         grid: the arrangements that are searched; its ranges bound the coordinates.
         resolution: the smallest spacing d_min of the lattice planes that are compared.
@@ -40,7 +41,8 @@ class PackingModel:
         origin: the file it was read from, for messages and for its fingerprint.
 
     Raises:
-        CrystalError: if the cell contradicts the group, or the molecules are larger than the cell.
+        CrystalError: if the cell contradicts the group, or overlap or slack would let a part
+            vanish in another.
     """
 
     name: str
@@ -63,7 +65,9 @@ class PackingModel:
                 f"{self.group.dimension}, cell {self.cell.dimension}, molecule "
                 f"{self.molecule.dimension}"
             )
-        self.group.check_cell(self.cell)
+        object.__setattr__(self, "cell", self.group.fitted_cell(self.cell))
+        check_depth(self.overlap, self.molecule)
+        check_depth(self.slack, self.molecule)
 
     @property
     def dimension(self) -> int:
@@ -167,6 +171,20 @@ class PackingModel:
         given = np.array([values[key] for key in self.keys], dtype=float)
         turns = [coordinate.turns for coordinate in self.molecule.coordinates]
         return np.where(turns, np.radians(given), given)
+
+
+def check_depth(depth: float, molecule: Molecule) -> None:
+    """Check how deep a molecule's parts may reach into others.
+
+    Raises:
+        CrystalError: if a part could vanish in another one.
+    """
+    thinnest = min(float(part.semi_axes.min()) for part in molecule.robot.parts)
+    if not 0.0 <= depth < thinnest:
+        raise CrystalError(
+            f"expected a depth from 0 to less than the smallest semi-axis {thinnest:g}, got "
+            f"{depth:g}; lower it"
+        )
 
 
 def load_model(path_or_name: str | Path) -> PackingModel:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.model import PackingModel
+from ellipsoid_planning.crystal.model import PackingModel, check_depth
 from ellipsoid_planning.crystal.model_format import PackingModelBlock, TargetBlock
 from ellipsoid_planning.crystal.model_search import SHIFTS, SearchGrid
 from ellipsoid_planning.crystal.molecule import Molecule, molecule_of
@@ -89,10 +89,11 @@ class _Builder:
                 f"expected a group of dimension {block.dimension}, got {group.name} of dimension "
                 f"{group.dimension}; name a {'plane' if block.dimension == 2 else 'space'} group",
             )
-        cell = self._cell()
-        self._at(("cell",), group.check_cell, cell)
+        cell = self._at(("cell",), group.fitted_cell, self._cell())
         molecule = self._molecule(cell)
         self._check_size(molecule, cell, group.order)
+        self._at(("packing", "overlap"), check_depth, block.packing.overlap, molecule)
+        self._at(("search", "slack"), check_depth, block.search.slack, molecule)
         self._check_extent(molecule, cell)
         model = PackingModel(
             block.name,

@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.crystal.cell_check import check_cell
+from ellipsoid_planning.crystal.cell_check import check_cell, fitted_cell
 from ellipsoid_planning.crystal.exact_matrix import exact_matrix, inverse, multiply
 from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.unit_cell import UnitCell
@@ -143,6 +143,15 @@ class SpaceGroup:
             CrystalError: names the length or angle that the group's system does not allow.
         """
         check_cell(self.name, self.integer_rotations, cell)
+
+    def fitted_cell(self, cell: UnitCell) -> UnitCell:
+        """The cell that the operations keep exactly, next to one that was rounded in a file.
+
+        Raises:
+            CrystalError: the cell contradicts the group.
+        """
+        self.check_cell(cell)
+        return fitted_cell(self.integer_rotations, cell)
 
     def index(self, operation: Operation) -> int:
         """The index of an operation, modulo the lattice.

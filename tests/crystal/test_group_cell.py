@@ -85,3 +85,32 @@ def _skewed(group):
 
     change = Operation.parse("x+2y,y")
     return [(change @ operation @ change.inverse()).modulo() for operation in group.operations]
+
+
+@pytest.mark.parametrize(
+    ("name", "lengths", "angles"),
+    [
+        ("P4", (10.0, 10.000004, 7.0), (90.0, 90.0, 90.00001)),
+        ("P6", (10.0, 10.000004, 7.0), (90.0, 90.00001, 119.99999)),
+        ("R3:R", (9.0, 9.000003, 9.0), (75.0, 75.00001, 75.0)),
+        ("p4", (5.0, 5.000002), 90.00001),
+    ],
+)
+def test_what_was_rounded_in_a_cell_is_corrected(name, lengths, angles):
+    group = space_group(name)
+    cell = UnitCell.from_parameters(lengths, angles)
+    fitted = group.fitted_cell(cell)
+    np.testing.assert_allclose(fitted.basis, cell.basis, atol=1e-5)
+    turns, _ = group.cartesian(fitted)
+    unit = np.eye(group.dimension)
+    np.testing.assert_allclose(turns @ turns.transpose(0, 2, 1), [unit] * group.order, atol=1e-14)
+    assert group.fitted_cell(fitted) is fitted
+
+
+def test_a_cell_that_fits_stays_as_it_is():
+    for name, cell in (
+        ("P23", UnitCell.from_parameters((7.3, 7.3, 7.3))),
+        ("P1", UnitCell.from_parameters((7, 8, 9), (75, 100, 62))),
+        ("P61", UnitCell.from_parameters((7.3, 7.3, 9.1), (90, 90, 120))),
+    ):
+        assert space_group(name).fitted_cell(cell) is cell

@@ -25,6 +25,8 @@ def changed(text, old, new):
 
 # What is replaced by what, the field of the error, and what its message says.
 SPATIAL = [
+    ("search:", "packing: {overlap: 2.5}\nsearch:", "packing.overlap", "semi-axis 2.5, got 2.5"),
+    ("search:", "search:\n  slack: 9", "search.slack", "semi-axis 2.5, got 9"),
     ("group: P1", "group: P1x", "group", "P1x"),
     ("group: P1", "group: p4", "group", "dimension 3.*space group"),
     ("group: P1", "group: P6", "cell", "120"),

@@ -29,6 +29,11 @@ class RunFolder:
         self.folder = folder
 
     @property
+    def is_open(self) -> bool:
+        """Whether the folder holds a run already."""
+        return (self.folder / self.manifest).is_file()
+
+    @property
     def _where(self) -> str:
         return f"{self.option} {self.folder}"
 
@@ -58,7 +63,7 @@ class RunFolder:
         self._check_access(self.folder)
         if not any(self.folder.iterdir()):
             return
-        if not (self.folder / self.manifest).is_file():
+        if not self.is_open:
             raise EllipsoidPlanningError(
                 f"{self._where}: the folder holds other files; name a new or empty folder"
             )

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
+from ellipsoid_planning import __version__
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.errors import CrystalError
 
@@ -35,15 +36,27 @@ def normal_form(model: PackingModel) -> dict[str, Any]:
 
 
 def model_text(model: PackingModel) -> str:
-    """The normal form as text, which `model_from_text` makes the model of again."""
+    """The normal form as text, keys in order."""
     return json.dumps(normal_form(model), sort_keys=True)
 
 
+def sent_model(model: PackingModel) -> tuple[str, str]:
+    """What another process makes the model of: our version, and the normal form as text."""
+    return __version__, model_text(model)
+
+
 @lru_cache(maxsize=4)
-def model_from_text(text: str) -> PackingModel:
-    """The model of a text by `model_text`; a process makes it once."""
+def received_model(sent: tuple[str, str]) -> PackingModel:
+    """The model that `sent_model` describes; a process makes it once.
+
+    Raises:
+        CrystalError: another version sent it; its results might not be ours.
+    """
     from ellipsoid_planning.crystal.model_build import model_of
 
+    version, text = sent
+    if version != __version__:
+        raise CrystalError(f"expected work of version {__version__}, which is here, got {version}")
     return model_of(json.loads(text))
 
 

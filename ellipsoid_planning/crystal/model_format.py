@@ -128,6 +128,15 @@ class TargetBlock(Block):
 
 def packing_model_schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of packing models."""
-    schema = PackingModelBlock.model_json_schema()
+    return _schema(PackingModelBlock, "packing model")
+
+
+def target_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of targets."""
+    return _schema(TargetBlock, "target")
+
+
+def _schema(block: type[Block], what: str) -> dict[str, Any]:
     dialect = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": dialect, **schema, "title": "ellipsoid-planning packing model, format 1"}
+    title = f"ellipsoid-planning {what}, format 1"
+    return {"$schema": dialect, **block.model_json_schema(), "title": title}

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.crystal.fingerprint import model_from_text, model_text
+from ellipsoid_planning.crystal.fingerprint import received_model, sent_model
 from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.crystal.potential_candidates import CellSearch, PotentialCandidates
@@ -41,7 +41,7 @@ class PotentialMinima:
     def __reduce__(self) -> tuple[Any, ...]:
         given = self.search
         settings = given.mixture.spread, given.step, given.starts
-        return _from_settings, (model_text(given.model), *settings)
+        return _received, (sent_model(given.model), *settings)
 
 
 def cell_search(
@@ -57,15 +57,11 @@ def cell_search(
     return search
 
 
-def _from_settings(
-    text: str, spread: float, step: float | None, starts: int | None
-) -> PotentialMinima:
-    return _minima(text, spread, step, starts)
-
-
 @lru_cache(maxsize=4)
-def _minima(text: str, spread: float, step: float | None, starts: int | None) -> PotentialMinima:
-    return PotentialMinima(cell_search(model_from_text(text), spread, step, starts))
+def _received(
+    sent: tuple[str, str], spread: float, step: float | None, starts: int | None
+) -> PotentialMinima:
+    return PotentialMinima(cell_search(received_model(sent), spread, step, starts))
 
 
 def cell_pieces(search: CellSearch) -> tuple[Piece, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fingerprint import model_from_text, model_text
+from ellipsoid_planning.crystal.fingerprint import received_model, sent_model
 from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.crystal.ranking import Ranker, Ranking, merged
@@ -46,7 +46,7 @@ class RankedArrangements:
 
     def __reduce__(self) -> tuple[Any, ...]:
         magnitudes = pickle.dumps(self.cost.magnitudes)
-        return _from_data, (model_text(self.cost.model), magnitudes, self.cost.scaled, self.best)
+        return _received, (sent_model(self.cost.model), magnitudes, self.cost.scaled, self.best)
 
 
 @lru_cache(maxsize=4)
@@ -54,13 +54,16 @@ def _ranker(cost: FourierCost) -> Ranker:
     return Ranker(GridSearch(cost.model), cost)
 
 
-def _from_data(text: str, magnitudes: bytes, scaled: bool, best: int) -> RankedArrangements:
-    return RankedArrangements(_cost(text, magnitudes, scaled), best)
+Sent = tuple[str, str]
+
+
+def _received(sent: Sent, magnitudes: bytes, scaled: bool, best: int) -> RankedArrangements:
+    return RankedArrangements(_cost(sent, magnitudes, scaled), best)
 
 
 @lru_cache(maxsize=4)
-def _cost(text: str, magnitudes: bytes, scaled: bool) -> FourierCost:
-    return FourierCost(model_from_text(text), pickle.loads(magnitudes), scaled)  # noqa: S301  ours
+def _cost(sent: Sent, magnitudes: bytes, scaled: bool) -> FourierCost:
+    return FourierCost(received_model(sent), pickle.loads(magnitudes), scaled)  # noqa: S301  ours
 
 
 def ranking_of(model: PackingModel, results: Iterable[Array], best: int) -> Ranking:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.cluster import ClusterError, cluster_client, run_on_workers
 from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fingerprint import model_from_text, model_text
+from ellipsoid_planning.crystal.fingerprint import received_model, sent_model
 from ellipsoid_planning.crystal.grid import ArrangementGrid
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.crystal.run_store import Keeper, Nowhere, array_bytes, bytes_array
@@ -109,7 +109,7 @@ class FreeArrangements:
         return _search_of(self.model).free(piece.first, piece.last)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _from_text, (model_text(self.model),)
+        return _received, (sent_model(self.model),)
 
 
 @lru_cache(maxsize=4)
@@ -117,8 +117,8 @@ def _search_of(model: PackingModel) -> GridSearch:
     return GridSearch(model)
 
 
-def _from_text(text: str) -> FreeArrangements:
-    return FreeArrangements(model_from_text(text))
+def _received(sent: tuple[str, str]) -> FreeArrangements:
+    return FreeArrangements(received_model(sent))
 
 
 def done(

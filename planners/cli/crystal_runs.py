@@ -141,6 +141,8 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
         store.check(settings())
     with _executor(workplace.cluster, workplace.jobs) as execute:
         if store is not None:
+            if store.is_open:
+                say(f"Going on with the run in {store.folder}.")
             store.open(settings())
         before = signal.getsignal(signal.SIGINT)
         try:

@@ -1,16 +1,24 @@
-"""``crystal schema``: the format of packing models for editors and other programs."""
+"""``crystal schema``: the formats of packing models and targets for editors and programs."""
 
 from __future__ import annotations
 
 import json
 import sys
+from typing import Annotated
+
+import typer
 
 
-def schema() -> None:
-    """Print the JSON schema of packing models.
+def schema(
+    target: Annotated[
+        bool, typer.Option("--target", help="That of targets, in place of packing models.")
+    ] = False,
+) -> None:
+    """Print the JSON schema of packing models, or of targets.
 
     [dim]Example:[/dim] ellipsoid-planning crystal schema > packing-model.schema.json
     """
-    from ellipsoid_planning.crystal.model_format import packing_model_schema
+    from ellipsoid_planning.crystal.model_format import packing_model_schema, target_schema
 
-    sys.stdout.write(json.dumps(packing_model_schema(), indent=2) + "\n")
+    chosen = target_schema() if target else packing_model_schema()
+    sys.stdout.write(json.dumps(chosen, indent=2) + "\n")

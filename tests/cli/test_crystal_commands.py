@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.model import load_model
 from ellipsoid_planning.crystal.model_files import bundled_models
-from ellipsoid_planning.crystal.model_format import packing_model_schema
+from ellipsoid_planning.crystal.model_format import packing_model_schema, target_schema
 from ellipsoid_planning.crystal.runs import search_pieces
 from planners.cli.main import app
 from tests.cli.command import COMMAND, refused, run
@@ -39,6 +39,7 @@ def test_models_and_schema():
         assert name in done.stdout
     assert "94,478,400" in done.stdout
     assert json.loads(inside("schema").stdout) == packing_model_schema()
+    assert json.loads(inside("schema", "--target").stdout) == target_schema()
 
 
 @pytest.mark.parametrize("command", ["models", "show", "pack", "phase", "schema"])
@@ -93,6 +94,19 @@ def test_pack_writes_all_arrangements(suffix, tmp_path):
     assert len(found) == len(expected)
     assert np.allclose([model.configuration(entry) for entry in found], expected)
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_nothing_free_is_exit_code_1(tmp_path):
+    text = P1.replace("[14, 14, 14]", "[11, 11, 11]")
+    (tmp_path / "tight.yaml").write_text(text, encoding="utf-8")
+    done = inside("pack", tmp_path / "tight.yaml", "--figure", tmp_path / "x.png", "--json")
+    assert (done.returncode, json.loads(done.stdout)["free"]) == (1, 0)
+    assert "nothing is drawn" in done.stderr
+    target = ("--target", "rabbit-p1-target", "--json")
+    done = inside("phase", tmp_path / "tight.yaml", *target)
+    found = json.loads(done.stdout)
+    assert (done.returncode, found["found"], found["arrangement"]) == (1, False, None)
+    assert inside("phase", tmp_path / "tight.yaml", *target[:2]).returncode == 1
 
 
 def test_a_killed_run_goes_on_and_a_changed_model_is_refused(tmp_path, monkeypatch):

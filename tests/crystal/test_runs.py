@@ -13,8 +13,8 @@ from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.fingerprint import (
     differences,
     fingerprint,
-    model_from_text,
-    model_text,
+    received_model,
+    sent_model,
 )
 from ellipsoid_planning.crystal.model import load_model
 from ellipsoid_planning.crystal.model_files import bundled_models
@@ -179,7 +179,7 @@ def test_fingerprints_see_what_matters_only(model):
     for old, new in (("[14, 14, 14]", "[14, 14, 14.001]"), ("resolution: 4.6", "resolution: 4.5")):
         assert fingerprint(model_from(P1.replace(old, new))) != fingerprint(model)
     assert np.array_equal(
-        model_from_text(model_text(model)).grid.configurations([5, 944_783]),
+        received_model(sent_model(model)).grid.configurations([5, 944_783]),
         model.grid.configurations([5, 944_783]),
     )
     assert differences({"a": [1, {"b": 2}]}, {"a": [1, {"b": 2}]}) == []
@@ -189,6 +189,8 @@ def test_fingerprints_see_what_matters_only(model):
 def test_work_is_sent_as_its_document(model, free):
     content = pickle.dumps(FreeArrangements(model))
     assert len(content) < 10_000
+    with pytest.raises(CrystalError, match=r"version.*got 0\.0\.1"):
+        received_model(("0.0.1", sent_model(model)[1]))
     found = pickle.loads(content)(Piece("search", 0, 0, model.grid.base_poses))
     assert np.array_equal(found, free)
 

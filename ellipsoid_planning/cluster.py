@@ -146,6 +146,8 @@ class _Dispatch(Generic[T, R]):
         self._running: dict[str, tuple[str, T, Any]] = {}
         self._losses: Counter[str] = Counter()
         self._last_worker = time.monotonic()
+        self._present: dict[str, int] = {}
+        self._asked = -_LOOK_EVERY
 
     @property
     def unfinished(self) -> bool:
@@ -183,6 +185,9 @@ class _Dispatch(Generic[T, R]):
             future.cancel()
 
     def _workers(self) -> dict[str, int]:
+        """The threads of each worker; the scheduler is asked now and then only."""
+        if time.monotonic() - self._asked < _LOOK_EVERY:
+            return self._present
         try:
             present: dict[str, int] = dict(self._client.nthreads())
         except (OSError, TimeoutError) as error:
@@ -195,6 +200,7 @@ class _Dispatch(Generic[T, R]):
                 f"the cluster has had no worker for {_WORKER_LIMIT:g} s; start some, "
                 "and give the same command to go on"
             )
+        self._present, self._asked = present, now
         return present
 
     def _submit(self, worker: str, task: T) -> None:

@@ -58,13 +58,14 @@ class Equivalents:
 
     @cached_property
     def directions(self) -> Array:
-        """(c, 3), Cartesian: along these the whole crystal may be shifted by any amount."""
+        """(c, 3), Cartesian unit vectors: along these the crystal may be shifted by any amount."""
         directions = indistinguishable(self.model.group).directions
         found = np.zeros((len(directions), 3))
         for row, direction in zip(found, directions, strict=True):
             row[: self.model.dimension] = self.model.cell.cartesian(
                 np.array(direction, dtype=float)
             )
+            row /= np.linalg.norm(row)
         return found
 
     def near(self, found: ArrayLike, target: ArrayLike) -> tuple[Equivalent, ...]:
@@ -112,12 +113,17 @@ class Equivalents:
     def _way(self, image: Bodies, target: Bodies) -> Array:
         """The lattice vector plus free shift that brings an image's middle to the target's."""
         way = (self._weights[:, None] * (target.centres - image.centres)).sum(axis=0)
-        free = np.zeros(3)
-        if len(self.directions):
-            shares = np.linalg.lstsq(self.directions.T, way, rcond=None)[0]
-            free = shares @ self.directions
         _, basis, inverse, _ = self.model.crystal
-        return free + basis @ np.round(inverse @ (way - free))
+        lattice = basis @ np.round(inverse @ (way - self._free(way)))
+        # Where free shifts lie askew to the lattice, as in R3, the vector has some of them, too.
+        return lattice + self._free(way - lattice)
+
+    def _free(self, way: Array) -> Array:
+        """The share of a vector that lies along the free shifts."""
+        if not len(self.directions):
+            return np.zeros(3)
+        shares = np.linalg.lstsq(self.directions.T, way, rcond=None)[0]
+        return shares @ self.directions
 
     @cached_property
     def _weights(self) -> Array:

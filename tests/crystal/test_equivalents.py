@@ -10,6 +10,7 @@ from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.placed_bodies import Bodies, body_rates
 
 from .diffraction import lattice_points, magnitudes, random_configurations
+from .packings import one_body
 
 MODELS = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
 
@@ -99,6 +100,31 @@ def test_half_a_turn_counts_for_nothing_in_the_plane():
         found = target + turns * np.eye(3)[0]
         nearest = Equivalents(model).near(found, target)[0]
         assert nearest.configuration == pytest.approx(target, abs=1e-8)
+
+
+@pytest.mark.parametrize("angle", [70.0, 105.0])
+def test_free_shifts_may_lie_askew_to_the_lattice(angle):
+    # R3 on rhombohedral axes: along the sum of all three.
+    cell = f"{{lengths: [30, 30, 30], angles_deg: [{angle}, {angle}, {angle}]}}"
+    turn = "{lower: 0, upper: 90, step: 90}"
+    shift = "{lower: 0, upper: 30, step: 30}"
+    model = one_body(
+        "R3:R",
+        cell,
+        [1.0, 1.5, 2.0],
+        f"{{position: {{x: {shift}, y: {shift}, z: {shift}}}, orientation: {{alpha_deg: {turn}, "
+        f"beta_deg: {turn}, gamma_deg: {turn}}}}}",
+    )
+    assert np.linalg.norm(Equivalents(model).directions, axis=1) == pytest.approx([1.0])
+    vectors = lattice_points(model, 4.0)
+    rng = np.random.default_rng(3)
+    for target in random_configurations(model, 4, seed=10):
+        found = target.copy()
+        found[:3] += 30.0 * rng.integers(-2, 3, 3) + rng.uniform(-30.0, 30.0)
+        expected = magnitudes(model, target, vectors)
+        assert magnitudes(model, found, vectors) == pytest.approx(expected, abs=1e-8)
+        nearest = Equivalents(model).near(found, target)[0]
+        assert nearest.configuration == pytest.approx(target, abs=1e-7)
 
 
 @pytest.mark.parametrize("name", MODELS)

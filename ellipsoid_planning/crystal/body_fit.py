@@ -98,16 +98,15 @@ class _Task:
 
     def jacobian(self, unknowns: Array) -> Array:
         centres, shapes = body_rates(self._molecule, unknowns[: self._count])
+        parts = len(self._wanted.centres)
         rows = np.hstack(
             [
-                centres.reshape(self._count, -1) / self._unit,
-                shapes.reshape(self._count, -1) / self._unit**2,
+                centres.reshape(self._count, 3 * parts) / self._unit,
+                shapes.reshape(self._count, 9 * parts) / self._unit**2,
             ]
         )
         shifts = np.zeros((len(self._directions), rows.shape[1]))
-        shifts[:, : 3 * len(self._wanted.centres)] = np.tile(
-            -self._directions / self._unit, len(self._wanted.centres)
-        )
+        shifts[:, : 3 * parts] = np.tile(-self._directions / self._unit, parts)
         return np.vstack([rows, shifts]).T
 
 

@@ -62,10 +62,8 @@ class Equivalents:
         directions = indistinguishable(self.model.group).directions
         found = np.zeros((len(directions), 3))
         for row, direction in zip(found, directions, strict=True):
-            row[: self.model.dimension] = self.model.cell.cartesian(
-                np.array(direction, dtype=float)
-            )
-            row /= np.linalg.norm(row)
+            way = self.model.cell.cartesian(np.array(direction, dtype=float))
+            row[: self.model.dimension] = way / np.linalg.norm(way)
         return found
 
     def near(self, found: ArrayLike, target: ArrayLike) -> tuple[Equivalent, ...]:

@@ -24,8 +24,8 @@ from ellipsoid_planning.errors import ScenarioError
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-# Measured ones first, calculated ones last; compared without case, hyphens and underscores.
-PREFERRED = (
+# Names of columns, best first; compared without case, hyphens and underscores.
+MEASURED = (
     "FP",
     "F",
     "FOBS",
@@ -37,6 +37,8 @@ PREFERRED = (
     "IOBS",
     "INTENSITYMEAS",
     "FSQUAREDMEAS",
+)
+CALCULATED = (
     "FC",
     "FCALC",
     "FCALCAU",
@@ -60,8 +62,9 @@ def read_magnitudes(
     Args:
         path: the file.
         model: the packing model; the file's cell and group, if it tells them, must be its own.
-        column: which column; by default the first there is of `PREFERRED`, or the only one of
-            its kind. Intensities are made magnitudes by their square root.
+        column: which column; by default the first there is of `MEASURED`, else the only one of
+            its kind, else the first of `CALCULATED`. Intensities are made magnitudes by their
+            square root.
         skip_missing: leave reflections without a value, or with an intensity below 0, out.
 
     Raises:
@@ -91,15 +94,19 @@ def _offer(table: ReflectionTable) -> str:
 def _choose(table: ReflectionTable) -> str:
     plain = {name.upper().replace("-", "").replace("_", ""): name for name in table.columns}
     usable = {key: n for key, n in plain.items() if table.kinds[n] in (MAGNITUDE, INTENSITY)}
-    for key in PREFERRED:
+    for key in MEASURED:
         if key in usable:
             return usable[key]
+    others = [name for key, name in usable.items() if key not in CALCULATED]
     for kind in (MAGNITUDE, INTENSITY):
-        found = [name for name, its in table.kinds.items() if its == kind]
+        found = [name for name in others if table.kinds[name] == kind]
         if len(found) == 1:
             return found[0]
         if found:
             break
+    for key in CALCULATED:
+        if key in usable and not others:
+            return usable[key]
     raise ScenarioError(
         f"expected one column of magnitudes or intensities; {_offer(table)}, name the right one"
         if usable

@@ -38,6 +38,7 @@ CIF_KINDS = {
 }
 GROUP_TAGS = ("symmetry.space_group_name_H-M", "space_group.name_H-M_alt", "space_group_name_H-M")
 CELL_TAGS = ("length_a", "length_b", "length_c", "angle_alpha", "angle_beta", "angle_gamma")
+LARGEST_INDEX = 10**6
 # A number of CIF, with its uncertainty in brackets or without.
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\(\d+\))?")
 
@@ -134,16 +135,19 @@ def _read_cif(file: str) -> ReflectionTable:
 
 
 def _cif_table(file: str, block: Any, prefix: str) -> ReflectionTable:
-    tags = [tag[len(prefix) :] for tag in block.find_loop(f"{prefix}index_h").get_loop().tags]
+    known = {tag.lower(): tag for tag in CIF_KINDS}  # CIF's names do not depend on case
+    tags = [
+        tag[len(prefix) :].lower() for tag in block.find_loop(f"{prefix}index_h").get_loop().tags
+    ]
     indices = []
     for name in ("index_h", "index_k", "index_l"):
         if name not in tags:
             raise ScenarioError("this column is missing", file=file, field=prefix + name)
         values = _numbers(file, prefix + name, block.find_loop(prefix + name))
-        if not np.all(values == np.round(values)):
+        if not np.all((values == np.round(values)) & (np.abs(values) <= LARGEST_INDEX)):
             raise ScenarioError("expected whole numbers only", file=file, field=prefix + name)
         indices.append(values.astype(np.int64))
-    kinds = {tag: CIF_KINDS[tag] for tag in tags if tag in CIF_KINDS}
+    kinds = {known[tag]: CIF_KINDS[known[tag]] for tag in tags if tag in known}
     columns = {}
     for tag, kind in kinds.items():
         texts = list(block.find_loop(prefix + tag))

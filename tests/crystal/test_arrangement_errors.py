@@ -13,6 +13,7 @@ from ellipsoid_planning.crystal.model import load_model
 from ellipsoid_planning.crystal.placed_bodies import Bodies
 
 from .diffraction import random_configurations
+from .packings import one_body
 
 MODELS = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
 
@@ -93,3 +94,9 @@ def test_a_face_that_turns_under_its_ears_is_no_error():
         found = fit_bodies(model.molecule, bodies, found, np.eye(3)).configuration
         assert abs(found[2] - target[2]) > 0.01
         assert arrangement_errors(model, found, target).e_max_deg < 1e-5
+
+
+def test_a_molecule_that_stands_still_has_no_errors():
+    model = one_body("P1", "{lengths: [9, 9, 9]}", [1.0, 1.0, 1.0])
+    errors = arrangement_errors(model, [], [])
+    assert errors.motion == errors.mean_turn == 0.0 and errors.mean_shift is None

@@ -59,6 +59,27 @@ def write_mtz(path, rows, columns, group="P 21 21 21", cell=(22, 22, 22, 90, 90,
     return path
 
 
+def test_calculated_ones_are_read_only_where_there_are_no_others(model, tmp_path):
+    rows = [[1, 0, 1, 1.0, 2.0]]
+    for first, found in (("F_XDS", 1.0), ("F-model", 1.0), ("FCALC", 2.0)):
+        path = write_mtz(tmp_path / "data.mtz", rows, [(first, "F"), ("FC", "F")])
+        assert read_magnitudes(path, model).values.tolist() == [found]
+    rows = [[1, 0, 1, 1.0, 2.0, 3.0]]
+    path = write_mtz(tmp_path / "data.mtz", rows, [("FC", "F"), ("X", "F"), ("Y", "F")])
+    with pytest.raises(ScenarioError, match="the file has FC, X, Y, name the right one"):
+        read_magnitudes(path, model)
+
+
+def test_names_in_cif_do_not_depend_on_case_and_huge_indices_are_refused(model, tmp_path):
+    path = tmp_path / "data.cif"
+    text = HEADER.format(**FIT).replace("_refln.index", "_REFLN.Index") + "_refln.f_MEAS_au\n"
+    path.write_text(text + "1 0 1 3.0\n")
+    assert read_magnitudes(path, model).values.tolist() == [3.0]
+    path.write_text(text + "1e23 0 1 3.0\n")
+    with pytest.raises(ScenarioError, match="index_h: expected whole numbers"):
+        read_magnitudes(path, model)
+
+
 @pytest.mark.parametrize("name", ["rabbit-plane", "rabbit-p1", "rabbit-p212121"])
 def test_what_is_written_is_read_again(name, tmp_path):
     model = load_model(name)

@@ -18,7 +18,7 @@ from ellipsoid_planning.crystal.runs import MOST_PIECES, Piece, pieces
 
 Array = NDArray[np.float64]
 
-CELLS_AT_A_TIME = 16
+CELLS_AT_A_TIME = 4
 
 
 @dataclass(frozen=True, eq=False)

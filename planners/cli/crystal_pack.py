@@ -70,8 +70,8 @@ def pack(
     at, and are free), model, group, method, keys (the coordinates' names), fingerprint (of the
     model), time (search and total, in seconds, of this session), version, and, with --list or
     --output, arrangements: number (in the grid) and configuration (by key, angles in degrees; as
-    in a target's file); by potential also its value, smallest first. All free arrangements are
-    proved free.
+    in a target's file); by potential also its value, smallest first. Free is proved: no two copies
+    reach deeper into each other than the model allows (packing.overlap, search.slack; 0 without).
 
     [dim]Exit codes: 0 some are free, 1 none is, 2 bad input, 130 interrupted.[/dim]
 

@@ -16,8 +16,20 @@ from ellipsoid_planning.crystal.fingerprint import (
     received_model,
     sent_model,
 )
-from ellipsoid_planning.crystal.model import load_model
+from ellipsoid_planning.crystal.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.magnitudes import simulate
+from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.model_files import bundled_models
+from ellipsoid_planning.crystal.potential_candidates import candidates_by_potential
+from ellipsoid_planning.crystal.potential_runs import (
+    PotentialMinima,
+    candidates_of,
+    cell_pieces,
+    cell_search,
+)
+from ellipsoid_planning.crystal.ranking import rank
+from ellipsoid_planning.crystal.ranking_runs import RankedArrangements, ranking_of
 from ellipsoid_planning.crystal.run_store import DIGEST, RunStore, run_settings
 from ellipsoid_planning.crystal.runs import (
     AT_A_TIME,
@@ -211,3 +223,24 @@ def test_a_cluster_gives_the_same_even_when_a_worker_is_killed(model, free):
         assert np.array_equal(search(model, 5, execute, on_piece=kill_one), free)
         assert len(finished) == len(search_pieces(model.grid, 5))
         assert set(client.run(os.getpid).values()) != set(pids)
+
+
+def test_rankings_and_potential_minima_in_pieces_are_those_at_once():
+    plane = load_model("rabbit-plane")
+    cost = FourierCost(plane, simulate(plane, load_target("rabbit-plane-target", plane)))
+    at_once = rank(GridSearch(plane), GridSearch(plane).free(0, plane.grid.base_poses), cost, 7)
+    work = pickle.loads(pickle.dumps(RankedArrangements(cost, 7)))
+    for size in (1, 4):
+        results = done(work, search_pieces(plane.grid, size), in_threads(2))
+        found = ranking_of(plane, (result for _, result in results), 7)
+        assert np.array_equal(found.numbers, at_once.numbers)
+        assert np.array_equal(found.costs, at_once.costs)
+        assert found.looked_at == at_once.looked_at
+    step = np.radians(90.0)
+    whole = candidates_by_potential(plane, GaussianMixture(0.2), step=step)
+    minima = pickle.loads(pickle.dumps(PotentialMinima(cell_search(plane, 0.2, step))))
+    cut = done(minima, cell_pieces(minima.search), in_threads(2))
+    again = candidates_of(result for _, result in cut)
+    assert np.array_equal(again.configurations, whole.configurations)
+    assert np.array_equal(again.potentials, whole.potentials)
+    assert np.array_equal(again.free, whole.free)

@@ -90,24 +90,32 @@ def cells_of(model: PackingModel, step: float | None = None) -> Array:
         raise CrystalError(f"expected a step > 0, got {step:g}; the thesis takes 30 degrees")
     shifts, base = grid.shift_count, grid.base_count
     order = [*range(shifts, base), *range(shifts), *range(base, len(grid.ranges))]
-    sides = []
+    sides, count = [], 1
     for k in order:
         coordinate, values = model.molecule.coordinates[k], grid.ranges[k]
-        cut = step is not None and coordinate.turns and values.upper > values.lower
-        sides.append(_cut(values.lower, values.upper, step or 0.0) if cut else values.cells)
-    count = math.prod(map(len, sides))
-    if count > MOST_CELLS:
-        raise CrystalError(
-            f"the grid has {count:,} cells, and a minimum is looked for in each: expected at most "
-            f"{MOST_CELLS:,}; make the cells larger by a step along the angles, or the grid coarser"
-        )
+        cut = step if coordinate.turns and values.upper > values.lower else None
+        count *= len(values.cells) if cut is None else _steps(values.upper - values.lower, cut)
+        _check_count(count)  # before they are made
+        sides.append(values.cells if cut is None else _cut(values.lower, values.upper, cut))
     cells = np.array(list(itertools.product(*sides))).reshape(-1, len(order), 2)
     return np.asarray(cells[:, np.argsort(order)])
 
 
+def _check_count(count: int) -> None:
+    if not count <= MOST_CELLS:
+        raise CrystalError(
+            f"the grid has {count:,} cells or more, and a minimum is looked for in each: expected "
+            f"at most {MOST_CELLS:,}; make the cells larger by a step along the angles, or the "
+            "grid coarser"
+        )
+
+
+def _steps(width: float, step: float) -> int:
+    return max(1, math.ceil(min(width / step * (1.0 - FITS), 2.0 * MOST_CELLS)))
+
+
 def _cut(lower: float, upper: float, step: float) -> Array:
-    count = max(1, math.ceil((upper - lower) / step * (1.0 - FITS)))
-    edges = np.append(lower + step * np.arange(count), upper)
+    edges = np.append(lower + step * np.arange(_steps(upper - lower, step)), upper)
     return np.stack([edges[:-1], edges[1:]], axis=1)
 
 

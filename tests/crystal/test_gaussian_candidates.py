@@ -98,6 +98,9 @@ def test_bad_input():
     mixture = GaussianMixture(1.0)
     with pytest.raises(CrystalError, match="step > 0"):
         candidates_by_potential(PLANE, mixture, step=0.0)
+    for tiny in (1e-3, 1e-9, 5e-324):  # refused before memory is taken for them
+        with pytest.raises(CrystalError, match="cells or more"):
+            cells_of(PLANE, tiny)
     for name in ("threads", "nodes", "starts"):
         with pytest.raises(CrystalError, match=f"{name} >= 1"):
             candidates_by_potential(PLANE, mixture, **{name: 0})

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 EVALUATIONS = 200
 # Relative steps, and gains, that end it; near the target of exact data each step's gain is huge.
 STEP, GAIN = 1e-13, 1e-8
+# A cost below this share of an empty cell's is nothing but rounding.
+ROUNDING = 1e-14
 # How often the way from a free arrangement to a better one that collides is halved.
 HALVINGS = 30
 # What a range of no width (a coordinate that the search holds fixed) may move: nothing, nearly.
@@ -67,17 +69,20 @@ def polish(
     cost.structure.checked(first[None])
     sizes = np.maximum(checked_reach(cost.model, reach, first), FIXED)
     task = _Task(cost)
-    found = least_squares(
-        task.residuals,
-        first,
-        task.jacobian,
-        bounds=(first - sizes, first + sizes),
-        x_scale=sizes,
-        max_nfev=evaluations,
-        xtol=STEP,
-        ftol=GAIN,
-        gtol=None,
-    )
+    try:
+        found = least_squares(
+            task.residuals,
+            first,
+            task.jacobian,
+            bounds=(first - sizes, first + sizes),
+            x_scale=sizes,
+            max_nfev=evaluations,
+            xtol=STEP,
+            ftol=GAIN,
+            gtol=None,
+        )
+    except _BottomError as bottom:
+        return _freed(cost, bottom.configuration, task.trace)
     return _freed(cost, np.asarray(found.x, dtype=float), task.trace)
 
 
@@ -122,6 +127,14 @@ def checked_reach(
     return given
 
 
+class _BottomError(Exception):
+    """Where no way leads down: least squares would divide by zero there."""
+
+    def __init__(self, configuration: Array) -> None:
+        super().__init__()
+        self.configuration = configuration
+
+
 class _Task:
     """Residuals and derivatives, computed together and kept, and what was seen on the way."""
 
@@ -145,7 +158,10 @@ class _Task:
         self._at = configuration.copy()
         both = self._cost.residuals_and_jacobian(configuration)
         self._residuals, self._jacobian = both
-        self.trace.add(configuration, float(np.linalg.norm(self._residuals)))
+        value = float(np.linalg.norm(self._residuals))
+        self.trace.add(configuration, value)
+        if value <= ROUNDING * self._cost.norm or not np.any(self._residuals @ self._jacobian):
+            raise _BottomError(self._at)
 
 
 def _freed(cost: FourierCost, end: Array, trace: Trace) -> Polished:

@@ -6,6 +6,7 @@ from ellipsoid_planning.crystal.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.magnitudes import simulate
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.polish import neighbourhood, polish
+from ellipsoid_planning.crystal.structure_factors import reflections_of
 from ellipsoid_planning.crystal.trace import Trace, trend
 from ellipsoid_planning.errors import CrystalError
 
@@ -115,3 +116,18 @@ def test_near_the_pole_of_euler_angles_the_outer_ones_may_go_farther():
     assert np.delete(reach, [3, 5]) == pytest.approx(np.delete(plain, [3, 5]))
     flat = load_model("rabbit-plane")
     assert neighbourhood(flat, 1.0, np.zeros(3)) == pytest.approx(neighbourhood(flat, 1.0))
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize("count", [1, 2, 1000])
+@pytest.mark.parametrize("name", ["rabbit-p1", "rabbit-p212121"])
+def test_where_nothing_leads_down_it_stays(name, count, scaled):
+    # The target itself; a point of symmetry; fewer reflections than coordinates.
+    model = load_model(name)
+    target = load_target(f"{name}-target", model)
+    some = reflections_of(model).subset(np.arange(min(count, len(reflections_of(model)))))
+    cost = FourierCost(model, simulate(model, target, some), scaled)
+    polished = polish(cost, target)
+    assert polished.free and np.array_equal(polished.configuration, target)
+    for start in (np.zeros(len(target)), target + 0.1):
+        assert polish(cost, start).cost <= cost.value(start)

@@ -12,13 +12,24 @@ FOLDER = "crystals"
 
 def bundled_models() -> dict[str, Path]:
     """Return the bundled packing models and targets by name, in alphabetical order."""
+    return {file.stem: file for file in _bundled("*.yaml")}
+
+
+def _bundled(pattern: str) -> list[Path]:
     package = Path(__file__).parents[1]
     # A wheel carries the files inside the package; a checkout has them beside it.
     for place in (package / "_scenarios", package.parent / "scenarios"):
-        files = sorted((place / FOLDER).glob("*.yaml"))
+        files = sorted((place / FOLDER).glob(pattern))
         if files:
-            return {file.stem: file for file in files}
-    return {}
+            return files
+    return []
+
+
+def locate_data(path_or_name: str | Path) -> Path:
+    """Return a data file: a path, or the file name of bundled data, such as dd-peptidase.mtz."""
+    path = Path(path_or_name)
+    bundled = {file.name: file for file in _bundled("*") if file.suffix != ".yaml"}
+    return path if path.exists() else bundled.get(str(path_or_name), path)
 
 
 def locate_model(path_or_name: str | Path) -> Path:

@@ -68,10 +68,11 @@ def load_data(
     from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
     from ellipsoid_planning.crystal.magnitudes import simulate
     from ellipsoid_planning.crystal.model import load_target
+    from ellipsoid_planning.crystal.model_files import locate_data
     from ellipsoid_planning.errors import CrystalError
 
     if Path(name).suffix.lower() in DATA_SUFFIXES:
-        magnitudes = read_magnitudes(name, model, column, skip_missing=skip_missing)
+        magnitudes = read_magnitudes(locate_data(name), model, column, skip_missing=skip_missing)
         known = None if compare is None else load_target(compare, model)
         return Data(name, FourierCost(model, magnitudes, scaled=magnitudes.relative), known)
     given = {"--column": column, "--compare": compare, "--skip-missing": skip_missing or None}

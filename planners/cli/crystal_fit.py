@@ -115,11 +115,12 @@ def fit(
     _check_suffix(magnitudes)
     from ellipsoid_planning.crystal.fitted_model import FittedModel, SearchSteps
     from ellipsoid_planning.crystal.fitting import deepest_overlap
+    from ellipsoid_planning.crystal.model_files import locate_data
     from ellipsoid_planning.crystal.structure import read_structure
 
     steps = SearchSteps(shift_step, turn_step_deg, hinge_deg, resolution=resolution)
     with working(f"Fitting {structure}"):
-        found = read_structure(structure)
+        found = read_structure(locate_data(structure))
         fitted, contacts = _fitted(found, domain, shape, parts, scale)
     depth = deepest_overlap(fitted) if overlap == AUTO else _number(overlap, "--overlap")
     model = FittedModel(fitted, steps, name or found.name, depth)

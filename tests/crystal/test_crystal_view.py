@@ -226,10 +226,13 @@ def test_edges_of_cells():
 
 def test_soft_bodies_may_overlap_as_deep_as_the_model_says():
     model, _ = target_of("rabbit-plane")
-    q = colliding(model)
-    soft = dataclasses.replace(model, overlap=3.0)
-    assert soft.is_free(q) and not drawn_cell(soft, q).overlaps
-    assert "free of overlaps deeper than 3" in drawn_cell(soft, q).headline()
+    soft = dataclasses.replace(model, overlap=0.9)
+    rng = np.random.default_rng(3)
+    ends = np.array([(r.lower, r.upper) for r in model.grid.ranges])
+    draws = rng.uniform(ends[:, 0], ends[:, 1], (2000, len(ends)))
+    q = draws[soft.are_free(draws) & ~model.are_free(draws)][0]
+    assert drawn_cell(model, q).overlaps and not drawn_cell(soft, q).overlaps
+    assert "free of overlaps deeper than 0.9" in drawn_cell(soft, q).headline()
 
 
 def test_bad_cells_are_refused():

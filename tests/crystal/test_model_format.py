@@ -6,7 +6,7 @@ import pytest
 
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.model_build import target_of
-from ellipsoid_planning.crystal.model_files import bundled_models
+from ellipsoid_planning.crystal.model_files import bundled_models, locate_data
 from ellipsoid_planning.crystal.model_format import packing_model_schema
 from ellipsoid_planning.crystal.ranges import Range
 from ellipsoid_planning.errors import CrystalError, ScenarioError
@@ -191,6 +191,15 @@ def test_an_unknown_name_suggests_the_bundled_ones(tmp_path):
         load_model("rabit-p1")
     with pytest.raises(ScenarioError, match="got a folder"):
         load_model(tmp_path)
+
+
+def test_bundled_data_is_found_by_its_file_name(tmp_path):
+    assert locate_data("dd-peptidase.mtz").is_file()
+    assert locate_data("dd-peptidase.pdb.gz").is_file()
+    own = tmp_path / "dd-peptidase.mtz"
+    own.write_text("mine")
+    assert locate_data(own) == own
+    assert not locate_data("nothing.mtz").exists()
 
 
 def test_values_in_file_units_come_back():

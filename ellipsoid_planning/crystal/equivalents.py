@@ -19,6 +19,7 @@ from ellipsoid_planning.crystal.indistinguishable import indistinguishable
 from ellipsoid_planning.crystal.model import PackingModel
 from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.placed_bodies import Bodies
+from ellipsoid_planning.crystal.regrouped import Regrouping
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -29,6 +30,8 @@ SAME = 1e-7
 # the nearest one that fits by this factor (of squared distances).
 ATTEMPTS = 8
 FARTHER = 4.0
+# Molecules of parts of several images are fitted if they are this much nearer than whole ones.
+NEARER = 1.0 - 1e-6
 UNLIKE = 1e12
 
 
@@ -67,23 +70,43 @@ class Equivalents:
         return found
 
     def near(self, found: ArrayLike, target: ArrayLike) -> tuple[Equivalent, ...]:
-        """Equivalents of the arrangement ``found`` near ``target`` (both (K,)), nearest first.
+        """Equivalents of the arrangement ``found`` near ``target`` (both (K,)).
 
-        The last is ``found`` itself.
+        Images of its molecules come first, the nearest first; then molecules put together of
+        parts of several images; the last is ``found`` itself.
         """
         start = np.asarray(target, dtype=float)
         wanted = Bodies.of(self.model.molecule, np.asarray(found, dtype=float))
         near = Bodies.of(self.model.molecule, start)
         chosen: list[Equivalent] = []
-        farthest = np.inf
-        for away, isometry, bodies in self._images(wanted, near)[:ATTEMPTS]:
-            if away > farthest:
-                break
-            fit = fit_bodies(self.model.molecule, bodies, start, self.directions)
-            if fit.misfit < SAME:
-                chosen.append(Equivalent(fit.configuration, isometry))
+        farthest = nearest = np.inf
+
+        def fit(away: float, isometry: Operation, bodies: Bodies) -> None:
+            nonlocal farthest, nearest
+            end = fit_bodies(self.model.molecule, bodies, start, self.directions)
+            if end.misfit < SAME:
+                chosen.append(Equivalent(end.configuration, isometry))
                 farthest = min(farthest, FARTHER * away + SAME)
+                nearest = min(nearest, NEARER * away)
+
+        for one in self._images(wanted, near)[:ATTEMPTS]:
+            if one[0] <= farthest:
+                fit(*one)
+        for one in self._regrouped(wanted, near)[:ATTEMPTS]:
+            if one[0] < nearest:
+                fit(*one)
         return (*chosen, Equivalent(np.asarray(found, dtype=float), self.isometries[0]))
+
+    def _regrouped(self, bodies: Bodies, target: Bodies) -> list[tuple[float, Operation, Bodies]]:
+        """Molecules of parts of several images, the nearest to the target first."""
+        unit = body_unit(self.model.molecule)
+        whole = Regrouping(self.model, self._weights, self._unlike, unit, self.directions)
+        found = [
+            (away, isometry, one)
+            for isometry in self.isometries
+            for away, one in whole.near(bodies.moved(*self._cartesian(isometry)), target)
+        ]
+        return sorted(found, key=lambda one: one[0])
 
     def _images(self, bodies: Bodies, target: Bodies) -> list[tuple[float, Operation, Bodies]]:
         """All images of bodies, each where it is nearest to the target, the nearest first."""

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
 from ellipsoid_planning.crystal.body_fit import fit_bodies
 from ellipsoid_planning.crystal.catalogue import space_group
 from ellipsoid_planning.crystal.equivalents import Equivalents
@@ -10,7 +11,7 @@ from ellipsoid_planning.crystal.operation import Operation
 from ellipsoid_planning.crystal.placed_bodies import Bodies, body_rates
 
 from .diffraction import lattice_points, magnitudes, random_configurations
-from .packings import one_body
+from .packings import model_from, one_body
 
 MODELS = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")
 
@@ -145,3 +146,47 @@ def test_bodies_that_the_molecule_cannot_make_leave_a_misfit():
     torn = Bodies(bodies.centres + np.outer([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]), bodies.shapes)
     assert fit_bodies(model.molecule, torn, configuration, np.eye(3)).misfit > 1e-3
     assert fit_bodies(model.molecule, bodies, configuration, np.eye(3)).misfit < 1e-12
+
+
+SLIDE = """\
+format: 1
+name: slide
+dimension: 2
+group: {group}
+cell: {{lengths: [10, 14]}}
+molecule:
+  links:
+    - name: body
+      parts: [{{semi_axes: [1.5, 0.6]}}]
+    - name: ear
+      parts: [{{semi_axes: [1, 0.4]}}]
+  joints:
+    - name: slide
+      type: prismatic
+      parent: body
+      child: ear
+      axis: [1, 0]
+      limit: {{lower: -9, upper: 9}}
+      origin: {{position: [0, 2.5]}}
+search:
+  position: {{x: {{lower: 0, upper: 10, step: 5}}}}
+  orientation: {{yaw_deg: {{lower: 0, upper: 180, step: 90}}}}
+  joints: {{slide: {{step: 3}}}}
+diffraction: {{resolution: 1}}
+"""
+
+
+@pytest.mark.parametrize("group", ["p1", "pg"])
+def test_whose_ear_it_is_diffraction_does_not_see(group):
+    model = model_from(SLIDE.format(group=group))
+    vectors = lattice_points(model, model.resolution)
+    for away in (0.0, 0.05):
+        target = np.array([1.0, away, -4.0])
+        found = np.array([1.0 + away, 0.0, 6.0 + away])  # the ear of the molecule next to it
+        if not away:
+            same = magnitudes(model, target, vectors)
+            assert magnitudes(model, found, vectors) == pytest.approx(same, abs=1e-10)
+        errors = arrangement_errors(model, found, target)
+        assert errors.mean_turn <= away + 1e-9 and errors.mean_shift <= away + 1e-9
+        got = magnitudes(model, errors.configuration, vectors)
+        assert got == pytest.approx(magnitudes(model, found, vectors), abs=1e-5)

@@ -99,6 +99,8 @@ def phase_candidates(
 
     With method "both" least squares goes through all candidates before the first tree grows: it
     takes milliseconds, a tree takes most of a second. So give it more than the thesis' ten.
+    Candidates may collide (``search.slack``): trees start where least squares found a free
+    arrangement near them; method "rrt" passes them over.
 
     Args:
         cost: FCF against the target, which knows the model.
@@ -122,7 +124,7 @@ def phase_candidates(
         )
     chosen = parameters or Refinement()
     threshold = chosen.cost_share * cost.norm
-    plan = _plan(chosen, len(given))
+    plan = _plan(chosen, cost.model.are_free(given))
     tried: list[Tried] = []
     for number, one_way in plan:
         refined = refiner(cost, given[number], one_way)
@@ -136,8 +138,11 @@ def phase_candidates(
     return PhasingOutcome(False, best, tuple(tried), threshold, time.perf_counter() - began)
 
 
-def _plan(parameters: Refinement, count: int) -> list[tuple[int, Refinement]]:
-    """Which candidate is refined how, in order."""
+def _plan(parameters: Refinement, free: NDArray[np.bool_]) -> list[tuple[int, Refinement]]:
+    """Which candidate is refined how, in order; a tree alone needs a free one, if there is any."""
+    count = len(free)
+    if parameters.method == "rrt" and np.any(free):
+        return [(int(number), parameters) for number in np.flatnonzero(free)]
     if parameters.method != "both":
         return [(number, parameters) for number in range(count)]
     polished = replace(parameters, method="polish")

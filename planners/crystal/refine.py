@@ -27,7 +27,8 @@ class Refined:
     """An arrangement after its refinement.
 
     Attributes:
-        configuration: (K,), the free arrangement with the lowest cost that was met.
+        configuration: (K,), the free arrangement with the lowest cost that was met; where none
+            was free, simply the one with the lowest cost.
         cost: its FCF.
         free: whether it is proved free; False only if the start was not.
         trace: what was looked at, in order, the start first.
@@ -62,8 +63,7 @@ def refine(cost: FourierCost, start: ArrayLike, parameters: Refinement | None = 
     task = _Task(cost, np.array(start, dtype=float), parameters or Refinement())
     task.run()
     seconds = time.perf_counter() - began
-    free = cost.model.is_free(task.best)
-    return Refined(task.best, task.lowest, free, task.trace, task.rounds, seconds)
+    return Refined(task.best, task.lowest, task.free, task.trace, task.rounds, seconds)
 
 
 class _Task:
@@ -75,7 +75,7 @@ class _Task:
         self._reach = neighbourhood(cost.model, parameters.reach, start)
         self._start_is_free = cost.model.is_free(start)
         self._start = start
-        self.best, self.lowest = start, cost.value(start)
+        self.best, self.lowest, self.free = start, cost.value(start), self._start_is_free
         self.trace = Trace()
         self.trace.add(start, self.lowest)
         self.rounds = 0
@@ -83,16 +83,21 @@ class _Task:
     def run(self) -> None:
         if self._parameters.method != "rrt":
             self._polish(self._start)
-        if self._parameters.method == "polish" or self.lowest <= self._threshold:
+        if self._parameters.method == "polish" or self._solved:
             return
-        if not self._start_is_free:
+        if self.free:
+            self._grow_trees(self._start if self._start_is_free else self.best)
+        elif self._parameters.method == "rrt":
             raise CrystalError(
                 "the RRT needs a free arrangement to start from, and this one collides: "
-                f"{self._cost.model.values_of(self._start)}; use method polish"
+                f"{self._cost.model.values_of(self._start)}; use method polish or both"
             )
-        self._grow_trees()
 
-    def _grow_trees(self) -> None:
+    @property
+    def _solved(self) -> bool:
+        return self.free and self.lowest <= self._threshold
+
+    def _grow_trees(self, root: Array) -> None:
         """Trees in smaller and smaller boxes, each rooted at the best of the one before.
 
         Least squares branches off from each tree's best, but no tree starts where it ended: that
@@ -100,7 +105,7 @@ class _Task:
         """
         from .tree import grow_tree
 
-        chosen, root = self._parameters, self._start
+        chosen = self._parameters
         for number in range(chosen.rounds):
             reach = self._reach * chosen.shrink**number
             found = grow_tree(
@@ -108,10 +113,10 @@ class _Task:
             )
             self.rounds += 1
             root = found[0]
-            self._take(*found)
-            if chosen.method == "both" and self.lowest > self._threshold:
+            self._take(*found, free=True)
+            if chosen.method == "both" and not self._solved:
                 self._polish(root)
-            if self.lowest <= self._threshold:
+            if self._solved:
                 return
 
     def _polish(self, start: Array) -> None:
@@ -120,13 +125,14 @@ class _Task:
             found = polish(self._cost, start, self._reach)
             if self._start_is_free and not found.free:
                 return
-            self._take(found.configuration, found.cost, found.trace)
+            self._take(found.configuration, found.cost, found.trace, found.free)
             away = np.abs(found.configuration - start)
             if not np.any((away >= EDGE * self._reach) & (self._reach > 0.0)):
                 return
             start = found.configuration
 
-    def _take(self, configuration: Array, value: float, trace: Trace) -> None:
+    def _take(self, configuration: Array, value: float, trace: Trace, free: bool) -> None:
+        """Keep an arrangement if it is better: free ones are better than all that collide."""
         self.trace.extend(trace)
-        if value < self.lowest:
-            self.best, self.lowest = configuration, value
+        if (not free, value) < (not self.free, self.lowest):
+            self.best, self.lowest, self.free = configuration, value, free

@@ -1,5 +1,6 @@
 import gc
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,6 +34,26 @@ def free_near(model, target, steps, seed):
 def candidates(model, cost, best):
     free = model.grid.configurations(GridSearch(model).free(0, model.grid.base_poses))
     return free[np.argsort(cost.values(free), kind="stable")[:best]]
+
+
+def test_candidates_that_collide_do_not_end_the_loop():
+    # As with search.slack, and magnitudes that no arrangement has.
+    model, target, cost = case("rabbit-p1")
+    wrong = np.random.default_rng(1).uniform(0.5, 2.0, len(cost.magnitudes))
+    given = replace(cost.magnitudes, values=wrong * cost.magnitudes.values)
+    cost = FourierCost(model, given, scaled=True)
+    near = target + neighbourhood(model) * np.random.default_rng(2).uniform(-1, 1, (60, 7))
+    colliding = near[~model.are_free(near)][:3]
+    fast = {"rounds": 1, "steps": 10}
+    outcome = phase_candidates(cost, [*colliding, target], Refinement("both", 1e-6, **fast))
+    assert not outcome.solved and outcome.best.refined.free and len(outcome.tried) == 8
+    assert all(
+        one.refined.free == model.is_free(one.refined.configuration) for one in outcome.tried
+    )
+    outcome = phase_candidates(cost, [*colliding, target], Refinement("rrt", 1e-6, **fast))
+    assert [one.number for one in outcome.tried] == [3]
+    with pytest.raises(CrystalError, match="free arrangement to start from"):
+        phase_candidates(cost, colliding, Refinement("rrt", 1e-6, **fast))
 
 
 @pytest.mark.parametrize("name", ["rabbit-plane", "rabbit-p1", "rabbit-p212121"])

@@ -71,9 +71,27 @@ def arrangement_errors(
     largest semi-axis. E_h is no judge of that: to it a spheroid that turned about its axis moved.
     """
     true = np.asarray(target, dtype=float)
-    equivalents = _equivalents(model).near(configuration, true)
-    best = min(equivalents, key=lambda one: _distance(model, one.configuration, true))
-    return plain_errors(model, best.configuration, true, best.isometry.triplet())
+    best = min(
+        (
+            (_distance(model, same, true), number, same, one.isometry.triplet())
+            for number, one in enumerate(_equivalents(model).near(configuration, true))
+            for same in _spellings(model, one.configuration)
+        ),
+        key=lambda entry: entry[:2],
+    )
+    return plain_errors(model, best[2], true, best[3])
+
+
+def _spellings(model: PackingModel, configuration: Array) -> tuple[Array, ...]:
+    """A configuration, and the one with the other three Euler angles of the same rotation."""
+    first, last = model.grid.shift_count, model.grid.base_count - 1
+    if last - first != 2 or model.dimension == 2:
+        return (configuration,)
+    other = configuration.copy()
+    other[[first, last]] += math.pi
+    same_axes = np.array_equal(model.molecule.axes[first], model.molecule.axes[last])
+    other[first + 1] = (0.0 if same_axes else math.pi) - other[first + 1]
+    return configuration, other
 
 
 def plain_errors(

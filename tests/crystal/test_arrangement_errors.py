@@ -100,3 +100,19 @@ def test_a_molecule_that_stands_still_has_no_errors():
     model = one_body("P1", "{lengths: [9, 9, 9]}", [1.0, 1.0, 1.0])
     errors = arrangement_errors(model, [], [])
     assert errors.motion == errors.mean_turn == 0.0 and errors.mean_shift is None
+
+
+@pytest.mark.parametrize("euler", ["ZXZ", "XYZ", "YXZ"])
+def test_angles_across_the_pole_are_near(euler):
+    # 0.02 to either side of the pole: 0.04 apart, but for signs of the outer angles far apart.
+    turn = "{lower: 0, upper: 90, step: 90}"
+    angles = f"alpha_deg: {turn}, beta_deg: {turn}, gamma_deg: {turn}"
+    search = f"{{orientation: {{euler: {euler}, {angles}}}}}"
+    model = one_body("P1", "{lengths: [9, 9, 9]}", [1.0, 1.5, 2.0], search)
+    pole = 0.0 if euler == "ZXZ" else math.pi / 2.0
+    target = np.array([0.5, pole + 0.02, 0.3])
+    found = np.array([0.5 - math.pi, (pole and math.pi) - (pole - 0.02), 0.3 + math.pi])
+    assert plain_errors(model, found, target).e_max_deg > 100.0
+    assert motion_error(model, found, [0.5, pole - 0.02, 0.3])[0] < 1e-12
+    errors = arrangement_errors(model, found, target)
+    assert errors.e_max_deg == pytest.approx(math.degrees(0.04))

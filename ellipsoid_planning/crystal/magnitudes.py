@@ -15,6 +15,8 @@ from ellipsoid_planning.errors import CrystalError
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+SMALLEST, LARGEST = 1e-100, 1e100
+
 
 @dataclass(frozen=True, eq=False)
 class Magnitudes:
@@ -30,7 +32,7 @@ class Magnitudes:
 
     Raises:
         CrystalError: if there are none, their number is not that of the reflections, or one is
-            negative or not finite; names the reflection.
+            negative or not finite; names the reflection; or the largest is enormous or tiny.
     """
 
     reflections: Reflections
@@ -48,6 +50,12 @@ class Magnitudes:
             object.__setattr__(self, "sigmas", self._checked(self.sigmas, "uncertainty"))
         if not np.any(self.values > 0.0):
             raise CrystalError(f"{self.source}: all magnitudes are 0; nothing can be compared")
+        largest = float(self.values.max())
+        if not SMALLEST <= largest <= LARGEST:  # their squares are no numbers any more
+            raise CrystalError(
+                f"{self.source}: expected magnitudes up to {SMALLEST:g} at least and {LARGEST:g} "
+                f"at most, the largest is {largest:g}; multiply all by a factor"
+            )
 
     def __len__(self) -> int:
         return len(self.values)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -21,6 +22,9 @@ Integers = NDArray[np.int64]
 # Costs are whole multiples of this share of the cost of an empty cell. Rounding errors are
 # a thousand times smaller; costs that differ by less are equal, and the lower number goes first.
 QUANTUM = 1e-10
+# The unit is no less than this share of the largest cost that a model can have, lest the number
+# of quanta be too large for an integer where target and model have scales of their own.
+LEAST_UNIT = 1e-6
 
 # Above so many numbers in the tables of limbs, arrangements are compared one by one.
 LARGEST_TABLE = 1 << 27
@@ -125,9 +129,9 @@ class Ranker:
         spots, reflections = self.cost.structure.table[0].shape[1], len(self.cost.magnitudes)
         return 2 * len(self.search.tables[2]) * (spots + reflections)
 
-    @property
+    @cached_property
     def _quantum(self) -> float:
-        return QUANTUM * self.cost.norm
+        return quantum_of(self.cost)
 
     @cached_property
     def _tables(self) -> tuple[object, ...]:
@@ -181,6 +185,15 @@ def rank(search: GridSearch, numbers: Integers, cost: FourierCost, best: int = 1
     return Ranker(search, cost).rank(numbers, best)
 
 
+def quantum_of(cost: FourierCost) -> float:
+    """What costs are rounded to multiples of."""
+    if cost.scaled:
+        return QUANTUM * cost.norm
+    volume = math.pi if cost.structure.planar else 4.0 * math.pi / 3.0
+    content = cost.model.group.order * volume * float(cost.structure.weights.sum())
+    return QUANTUM * max(cost.norm, LEAST_UNIT * content * math.sqrt(float(cost.weights.sum())))
+
+
 def rank_listed(cost: FourierCost, configurations: ArrayLike, best: int = 10) -> Ranking:
     """The ``best`` of any configurations (m, K), such as minima of a potential.
 
@@ -191,7 +204,7 @@ def rank_listed(cost: FourierCost, configurations: ArrayLike, best: int = 10) ->
     """
     _check_best(best)
     whole = cost.structure.checked(configurations)
-    quantum = QUANTUM * cost.norm
+    quantum = quantum_of(cost)
     costs = np.round(cost.values(whole) / quantum) * quantum
     numbers = np.lexsort((np.arange(len(costs)), costs))[:best].astype(np.int64)
     return Ranking(numbers, whole[numbers], costs[numbers], len(costs))

@@ -242,6 +242,8 @@ def test_magnitudes_check_themselves(target):
         (-target.values, r"reflection \(\d, \d, \d\): expected a magnitude of 0 or more, got -"),
         (np.full(80, np.nan), "got nan"),
         (np.zeros(80), "all magnitudes are 0"),
+        (np.full(80, 1e170), "the largest is 1e.170"),
+        (np.full(80, 1e-170), "the largest is 1e-170"),
     ):
         with pytest.raises(CrystalError, match=message):
             Magnitudes(target.reflections, values)

@@ -8,7 +8,7 @@ import pytest
 from ellipsoid_planning.crystal import ranking
 from ellipsoid_planning.crystal.collisions import GridSearch
 from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import simulate
+from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
 from ellipsoid_planning.crystal.model import load_model, load_target
 from ellipsoid_planning.crystal.ranking import (
     QUANTUM,
@@ -182,3 +182,21 @@ def test_nonsense_is_refused():
             rank(search, np.array([number]), cost)
     with pytest.raises(CrystalError, match="got none"):
         merged([])
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize("factor", [1e-80, 1e-12, 1e12, 1e80])
+def test_a_target_with_a_scale_of_its_own_does_not_overflow(factor, scaled):
+    model = load_model("rabbit-plane")
+    given = simulate(model, load_target("rabbit-plane-target", model))
+    target = Magnitudes(given.reflections, factor * given.values)
+    cost = FourierCost(model, target, scaled)
+    whole = model.grid.configurations(np.arange(model.grid.count))
+    plain = cost.values(whole)
+    for found in (
+        rank(GridSearch(model), np.arange(model.grid.count), cost, 3),
+        rank_listed(cost, whole, 3),
+    ):
+        # Where the target is enormous, all cost the same.
+        assert np.allclose(found.costs, np.sort(plain)[:3], rtol=1e-9)
+        assert np.allclose(plain[found.numbers], np.sort(plain)[:3], rtol=1e-9)

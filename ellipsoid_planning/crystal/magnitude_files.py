@@ -110,7 +110,8 @@ def _choose(table: ReflectionTable) -> str:
     raise ScenarioError(
         f"expected one column of magnitudes or intensities; {_offer(table)}, name the right one"
         if usable
-        else "expected a column of magnitudes or intensities; the file has none",
+        else "expected a column of magnitudes or intensities; the file has none (Friedel mates in "
+        "columns of their own, as F(+) and F(-), are to be averaged first)",
         file=table.file,
     )
 

@@ -146,8 +146,9 @@ def _usable(
     if not intensity and np.any(negative):
         _refuse(table, name, negative, "a magnitude of 0 or more")
     if not skip_missing:
-        _refuse(table, name, missing, "a magnitude", "; complete the data, or skip_missing")
-        remedy = "; make magnitudes of the intensities first, or skip_missing"
+        remedy = "; complete the data, or leave those out (--skip-missing)"
+        _refuse(table, name, missing, "a magnitude", remedy)
+        remedy = "; make magnitudes of the intensities, or leave those out (--skip-missing)"
         _refuse(table, name, negative, "an intensity of 0 or more", remedy)
     return within & ~skipped
 

@@ -39,6 +39,12 @@ class Range:
         Raises:
             CrystalError: if the interval is empty, or no whole number of steps long.
         """
+        if lower == upper:
+            half = 0.5 * step
+            raise CrystalError(
+                f"expected lower < upper, got {lower:g} twice; for this value alone write lower: "
+                f"{lower - half:g}, upper: {lower + half:g}, step: {step:g}"
+            )
         if not lower < upper:
             raise CrystalError(
                 f"expected lower < upper, got {lower:g} and {upper:g}; exchange or correct them"

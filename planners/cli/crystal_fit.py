@@ -44,7 +44,7 @@ def fit(
         ),
     ] = "moments",
     parts: Annotated[
-        int, typer.Option(metavar="N", min=1, help="How many ellipsoids a domain gets.")
+        int, typer.Option(metavar="N", min=1, max=100, help="How many ellipsoids a domain gets.")
     ] = 4,
     scale: Annotated[
         str,
@@ -72,11 +72,11 @@ def fit(
         float, typer.Option(metavar="D", help="Largest step of the search along the axes [Å].")
     ] = 5.0,
     turn_step_deg: Annotated[
-        float, typer.Option(metavar="D", help="Largest step of its turns [degree].")
+        float, typer.Option(metavar="D", help="Largest step of its turns, in degrees.")
     ] = 15.0,
     hinge_deg: Annotated[
         float,
-        typer.Option(metavar="D", help="Hinges turn by as much to both sides [degree]; 0: stiff."),
+        typer.Option(metavar="D", help="Hinges turn by as many degrees to both sides; 0: stiff."),
     ] = 15.0,
     output: Annotated[
         Path | None, typer.Option(metavar="MODEL.yaml", help="The packing model.")

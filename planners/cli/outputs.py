@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
     from ellipsoid_planning.robots import Robot
 
+PAGES = (".html", ".htm")
 QUATERNION = ("qx", "qy", "qz", "qw")
 COLUMNS = {
     (2, True): ("x", "y", "yaw"),
@@ -40,14 +41,18 @@ def check_outputs(**outputs: Path | None) -> None:
     Ctrl-C leaves no half-written remainders of these files.
 
     Raises:
-        EllipsoidPlanningError: a folder is missing or is not one, an output is a folder, or two
-            options name the same file.
+        EllipsoidPlanningError: a folder is missing or is not one, an output is a folder, a page
+            has another format's suffix, or two options name the same file.
     """
     taken: dict[Path, str] = {}
     for option, path in outputs.items():
         if path is None:
             continue
         _check_output(f"--{option}", path)
+        if option == "html" and path.suffix.lower() not in PAGES:
+            raise EllipsoidPlanningError(
+                f"--html {path}: unknown format {path.suffix!r}; expected {' or '.join(PAGES)}"
+            )
         other = taken.setdefault(path.resolve(), option)
         if other != option:
             raise EllipsoidPlanningError(

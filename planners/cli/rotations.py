@@ -38,8 +38,8 @@ def rotations(
         float | None,
         typer.Option(
             metavar="D",
-            help="Instead, the edge [degree] of a cube that has one rotation's share of them all: "
-            "the smallest grid that is at least as fine.",
+            help="Instead, the edge in degrees of a cube that has one rotation's share of them "
+            "all: the smallest grid that is at least as fine.",
         ),
     ] = None,
     seed: Annotated[

@@ -123,4 +123,4 @@ def checked_candidates(
 
 
 def _shown(model: PackingModel, configuration: ArrayLike) -> list[str]:
-    return [f"{value:.2f}" for value in model.values_of(configuration).values()]
+    return [f"{round(value, 2) + 0.0:.2f}" for value in model.values_of(configuration).values()]

@@ -115,6 +115,7 @@ def picture_of_trends(trends: Sequence[ErrorTrend], suffix: str, title: str = ""
 def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
     """Return the matplotlib figure."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
     if not trends:
         raise CrystalError("expected at least one error to draw over the steps, got none")
@@ -129,6 +130,7 @@ def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
         axes = drawn.add_subplot(rows, columns, index + 1)
         _draw_trend(axes, trend, HUES[index % len(HUES)])
         axes.set_xlabel("steps", fontsize=9)
+        axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
     handles, labels = drawn.axes[0].get_legend_handles_labels()
     drawn.legend(
         handles, labels, loc="outside lower center", ncols=len(labels), fontsize=9, frameon=False

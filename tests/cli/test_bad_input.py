@@ -156,6 +156,13 @@ def test_a_figure_of_an_unknown_format(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_page_does_not_replace_a_picture(tmp_path):
+    picture = tmp_path / "cell.png"
+    picture.write_bytes(b"kept")
+    assert refused(run("crystal", "show", "rabbit-p1", "--html", picture), "--html", ".html")
+    assert picture.read_bytes() == b"kept"
+
+
 def test_results_that_are_none(tmp_path):
     file = tmp_path / "result.json"
     for text, word in (("{", "broken JSON"), ("[]", "expected a result"), ("{}", "missing")):

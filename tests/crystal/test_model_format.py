@@ -55,6 +55,12 @@ SPATIAL = [
         "lower < upper, got 90 and 0",
     ),
     (
+        "lower: 0, upper: 90, step: 10}\n    beta",
+        "lower: 20, upper: 20, step: 10}\n    beta",
+        "search.orientation.alpha_deg",
+        "this value alone write lower: 15, upper: 25, step: 10",
+    ),
+    (
         "left_roll_deg: {step: 10}",
         "left_rol_deg: {step: 10}",
         "search.joints.left_rol_deg",

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ellipsoid_planning.crystal.fourier_cost import FourierCost
     from ellipsoid_planning.crystal.model import PackingModel
 
+FEW = 0.5  # of the model's reflections; fewer are said to be few
 DATA_SUFFIXES = (".mtz", ".cif", ".mmcif", ".ent")
 
 
@@ -29,6 +30,22 @@ class Data:
     name: str
     cost: FourierCost
     target: NDArray[np.float64] | None
+
+    @property
+    def warning(self) -> str | None:
+        """Why an arrangement that fits need not be the true one; None without a reason."""
+        magnitudes, model = self.cost.magnitudes, self.cost.model
+        unknowns = len(model.keys) + self.cost.scaled
+        share = f"{100.0 * magnitudes.completeness:.0f} % of those to resolution"
+        share += f" {model.resolution:g}"
+        if len(magnitudes) < unknowns:
+            return (
+                f"Warning: {self.name} has {len(magnitudes)} reflections, {share}, for {unknowns} "
+                "unknowns: an arrangement that fits them need not be the true one"
+            )
+        if magnitudes.completeness < FEW:
+            return f"Warning: {self.name} has only {share}: {len(magnitudes)} reflections"
+        return None
 
     def to_dict(self) -> dict[str, Any]:
         """Data for JSON."""

@@ -22,7 +22,7 @@ from planners.cli.crystal_candidates import (
 from planners.cli.crystal_runs import Cluster, Jobs, Json, Model, Run, Session, Workplace, session
 from planners.cli.outputs import check_outputs
 from planners.cli.progress import progress
-from planners.cli.terminal import wide_console
+from planners.cli.terminal import say, wide_console
 
 if TYPE_CHECKING:
     from ellipsoid_planning.crystal.potential_candidates import CellSearch
@@ -174,6 +174,8 @@ def phase(
     loaded = load_model(model)
     refinement = Refinement(method=refine.value, threshold=threshold, seed=seed)
     data = load_data(target, loaded, column, skip_missing=skip_missing, compare=compare)
+    if data.warning is not None:
+        say(data.warning)
     phased = _phased(
         data, best or CANDIDATES[refine], choice, refinement, Workplace(run, cluster, jobs)
     )

@@ -140,6 +140,14 @@ _refln.F_meas_au
 0 1 0 7.5
 """
 
+
+def test_few_reflections_are_said_to_be_few(tmp_path):
+    (tmp_path / "few.cif").write_text(CIF.format(first=7.5), encoding="utf-8")
+    done = phase("rabbit-p1", "--target", tmp_path / "few.cif", "--best", 1, "--refine", "polish")
+    assert done.returncode in {0, 1}
+    assert "has 2 reflections" in done.stderr and "for 8 unknowns" in done.stderr
+
+
 BAD = {
     "no target": (("--target", "rabbit-p1-traget"), ("did you mean rabbit-p1-target",)),
     "unknown coordinate": (("--target", "t.yaml"), ("t.yaml:3", "gama_deg", "gamma_deg")),

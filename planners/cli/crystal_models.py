@@ -22,7 +22,7 @@ def models() -> None:
     table.add_column("group")
     table.add_column("arrangements", justify="right")
     table.add_column("description")
-    for name, file in bundled_models().items():
+    for name, file in sorted(bundled_models().items()):
         document, _ = read_document(file)
         description = escape(str(document.get("description", "")))
         if "molecule" in document:

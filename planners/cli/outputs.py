@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,8 +42,8 @@ def check_outputs(**outputs: Path | None) -> None:
     Ctrl-C leaves no half-written remainders of these files.
 
     Raises:
-        EllipsoidPlanningError: a folder is missing or is not one, an output is a folder, a page
-            has another format's suffix, or two options name the same file.
+        EllipsoidPlanningError: a folder is missing, is not one or is read-only, an output is a
+            folder, a page has another format's suffix, or two options name the same file.
     """
     taken: dict[Path, str] = {}
     for option, path in outputs.items():
@@ -71,6 +72,11 @@ def _check_output(option: str, path: Path) -> None:
         raise EllipsoidPlanningError(f"{option} {path}: {str(folder)!r} is a file, not a folder")
     if path.is_dir():
         raise EllipsoidPlanningError(f"{option} {path}: expected a file name, this is a folder")
+    device = path.exists() and not path.is_file()
+    if not device and not os.access(path.resolve().parent, os.W_OK):  # links are followed
+        raise EllipsoidPlanningError(
+            f"{option} {path}: the folder {str(folder)!r} cannot be written to; name another one"
+        )
 
 
 def write_csv(result: PlanResult, output: Path) -> None:

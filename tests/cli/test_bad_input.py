@@ -2,6 +2,8 @@
 
 import pytest
 
+from ellipsoid_planning.errors import EllipsoidPlanningError
+from planners.cli.outputs import check_outputs
 from tests.cli.command import refused, run
 
 PLACE = "two-pillars.yaml:"
@@ -154,6 +156,12 @@ def test_a_figure_of_an_unknown_format(tmp_path):
     done = run("figure", "rabbit-2d-open", "--output", tmp_path / "figure.docx")
     assert refused(done, "docx")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_read_only_folder_is_found_before_the_search(tmp_path, monkeypatch):
+    monkeypatch.setattr("planners.cli.outputs.os.access", lambda *_: False)
+    with pytest.raises(EllipsoidPlanningError, match=r"--output .* cannot be written to"):
+        check_outputs(output=tmp_path / "free.csv")
 
 
 def test_a_page_does_not_replace_a_picture(tmp_path):

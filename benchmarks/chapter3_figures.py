@@ -10,17 +10,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.phasing_cases import free_numbers, grid_targets, random_targets
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import PackingModel, load_model, load_target
-from ellipsoid_planning.crystal.potential import GaussianPotential
-from ellipsoid_planning.crystal.potential_candidates import (
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.diffraction.ranking import Ranker
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.packing.model import PackingModel, load_model, load_target
+from ellipsoid_planning.crystal.packing.potential import GaussianPotential
+from ellipsoid_planning.crystal.packing.potential_candidates import (
     candidate_counts,
     candidates_by_potential,
 )
-from ellipsoid_planning.crystal.ranking import Ranker
-from ellipsoid_planning.crystal.trace import trend
+from ellipsoid_planning.crystal.phasing.trace import trend
 from planners.crystal.parameters import Refinement
 from planners.crystal.refine import refine
 from planners.view import colours

@@ -17,8 +17,8 @@ import time
 import fcl
 import numpy as np
 
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.model import PackingModel, load_model
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import PackingModel, load_model
 from ellipsoid_planning.geometry.dual import gap
 
 NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")

@@ -29,10 +29,10 @@ from benchmarks.phasing_cases import (
     with_step,
 )
 from benchmarks.phasing_trials import Candidates, Trial, run_trial
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import PackingModel, load_model
-from ellipsoid_planning.crystal.ranking import Ranker
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.diffraction.ranking import Ranker
+from ellipsoid_planning.crystal.packing.model import PackingModel, load_model
 from planners.crystal.parameters import Refinement
 
 PARTS = ("table", "plane", "p1", "p212121")
@@ -97,8 +97,8 @@ def by_collisions(model: PackingModel, best: int) -> tuple[Candidates, int]:
 
 def by_potential(model: PackingModel, spread: float, best: int) -> tuple[Candidates, int]:
     """Candidates from the minima of GCF with m_b = ``spread``, and how many these are."""
-    from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-    from ellipsoid_planning.crystal.potential_candidates import candidates_by_potential
+    from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+    from ellipsoid_planning.crystal.packing.potential_candidates import candidates_by_potential
 
     kept = candidates_by_potential(model, GaussianMixture(spread)).kept
 

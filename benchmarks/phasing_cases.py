@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.grid import ArrangementGrid
-from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.ranges import Range
+from ellipsoid_planning.crystal.packing.grid import ArrangementGrid
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import PackingModel
+from ellipsoid_planning.crystal.packing.ranges import Range
 
 # θ₁, θ₂, θ₃ of the targets [degree], and the mean of the final errors that the thesis prints.
 TABLE_3_2 = (

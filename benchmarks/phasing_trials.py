@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ellipsoid_planning.crystal.arrangement_errors import ArrangementErrors, arrangement_errors
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
-from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.trace import trend
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import Magnitudes, simulate
+from ellipsoid_planning.crystal.packing.model import PackingModel
+from ellipsoid_planning.crystal.phasing.arrangement_errors import (
+    ArrangementErrors,
+    arrangement_errors,
+)
+from ellipsoid_planning.crystal.phasing.trace import trend
 from planners.crystal.parameters import Refinement
 from planners.crystal.phasing import phase_candidates
 

@@ -19,19 +19,22 @@ from pathlib import Path
 
 import numpy as np
 
-from ellipsoid_planning.crystal.arrangement_errors import ArrangementErrors, arrangement_errors
-from ellipsoid_planning.crystal.calculated import calculated_factors, write_mtz
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.domains import parse_domain
-from ellipsoid_planning.crystal.fitted_model import FittedModel, SearchSteps
-from ellipsoid_planning.crystal.fitting import deepest_overlap, fit_domains
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
-from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.model_build import model_of, target_of
-from ellipsoid_planning.crystal.model_files import locate_model
-from ellipsoid_planning.crystal.ranking import rank_free
-from ellipsoid_planning.crystal.structure import CrystalStructure, read_structure
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitude_files import read_magnitudes
+from ellipsoid_planning.crystal.diffraction.ranking import rank_free
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import PackingModel
+from ellipsoid_planning.crystal.packing.model_build import model_of, target_of
+from ellipsoid_planning.crystal.packing.model_files import locate_model
+from ellipsoid_planning.crystal.phasing.arrangement_errors import (
+    ArrangementErrors,
+    arrangement_errors,
+)
+from ellipsoid_planning.crystal.structures.calculated import calculated_factors, write_mtz
+from ellipsoid_planning.crystal.structures.domains import parse_domain
+from ellipsoid_planning.crystal.structures.fitted_model import FittedModel, SearchSteps
+from ellipsoid_planning.crystal.structures.fitting import deepest_overlap, fit_domains
+from ellipsoid_planning.crystal.structures.structure import CrystalStructure, read_structure
 from ellipsoid_planning.scenario_origin import Origin
 from planners.crystal.parameters import Refinement
 from planners.crystal.phasing import phase_candidates

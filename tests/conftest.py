@@ -13,13 +13,13 @@ for name in ("rabbit-3d-open", "chain-18dof"):
 FreeIntervalSampling(load_scenario("rabbit-3d-open").cspace(), 1).sample(np.empty(7))
 """
 CRYSTALS = """
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.potential import GaussianPotential
-from ellipsoid_planning.crystal.ranking import rank
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.potential import GaussianPotential
+from ellipsoid_planning.crystal.diffraction.ranking import rank
 for name in ("rabbit-plane", "rabbit-p1"):
     model = load_model(name)
     target = load_target(name + "-target", model)

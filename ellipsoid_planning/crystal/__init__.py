@@ -1,10 +1,10 @@
 """Crystals: space-group calculations (thesis app. A), packing and phasing by packing (ch. 3)."""
 
-from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.group_text import space_group_from_text
-from ellipsoid_planning.crystal.operation import Operation
-from ellipsoid_planning.crystal.space_group import SpaceGroup
-from ellipsoid_planning.crystal.unit_cell import UnitCell
+from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+from ellipsoid_planning.crystal.symmetry.group_text import space_group_from_text
+from ellipsoid_planning.crystal.symmetry.operation import Operation
+from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
+from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 
 __all__ = [
     "Operation",

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.crystal.model import PackingModel
-    from ellipsoid_planning.crystal.potential_candidates import CellSearch
+    from ellipsoid_planning.crystal.packing.model import PackingModel
+    from ellipsoid_planning.crystal.packing.potential_candidates import CellSearch
     from planners.cli.crystal_runs import Session
 
 DEFAULT_SPREAD = 0.2
@@ -94,7 +94,7 @@ class Choice:
 
     def settings(self, model: PackingModel) -> dict[str, Any]:
         """What the pieces of work depend on, as data for JSON."""
-        from ellipsoid_planning.crystal.runs import piece_size
+        from ellipsoid_planning.crystal.phasing.runs import piece_size
 
         if self.method is Method.grid:
             return {"method": "grid", "piece": piece_size(model.grid)}
@@ -107,7 +107,7 @@ class Choice:
         Raises:
             CrystalError: the grid has no cells, or too many.
         """
-        from ellipsoid_planning.crystal.potential_runs import cell_search
+        from ellipsoid_planning.crystal.phasing.potential_runs import cell_search
 
         if self.method is Method.grid:
             return None
@@ -161,7 +161,7 @@ def by_grid(model: PackingModel, working: Session) -> Candidates:
     """The free arrangements of the grid, ascending."""
     import numpy as np
 
-    from ellipsoid_planning.crystal.runs import FreeArrangements, search_pieces
+    from ellipsoid_planning.crystal.phasing.runs import FreeArrangements, search_pieces
 
     began = time.perf_counter()
     title = f"Searching {model.grid.count:,} arrangements"
@@ -173,7 +173,7 @@ def by_potential(search: CellSearch, working: Session) -> Candidates:
     """The free minima of the cells, smallest potential first."""
     import numpy as np
 
-    from ellipsoid_planning.crystal.potential_runs import (
+    from ellipsoid_planning.crystal.phasing.potential_runs import (
         PotentialMinima,
         candidates_of,
         cell_pieces,

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.crystal.fourier_cost import FourierCost
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 FEW = 0.5  # of the model's reflections; fewer are said to be few
 DATA_SUFFIXES = (".mtz", ".cif", ".mmcif", ".ent")
@@ -81,11 +81,11 @@ def load_data(
     Raises:
         EllipsoidPlanningError: something is wrong with them.
     """
-    from ellipsoid_planning.crystal.fourier_cost import FourierCost
-    from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
-    from ellipsoid_planning.crystal.magnitudes import simulate
-    from ellipsoid_planning.crystal.model import load_target
-    from ellipsoid_planning.crystal.model_files import locate_data
+    from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+    from ellipsoid_planning.crystal.diffraction.magnitude_files import read_magnitudes
+    from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+    from ellipsoid_planning.crystal.packing.model import load_target
+    from ellipsoid_planning.crystal.packing.model_files import locate_data
     from ellipsoid_planning.errors import CrystalError
 
     if Path(name).suffix.lower() in DATA_SUFFIXES:

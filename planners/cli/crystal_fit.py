@@ -15,10 +15,10 @@ from planners.cli.outputs import check_outputs
 from planners.cli.terminal import say, working
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.crystal.contacts import Contact
-    from ellipsoid_planning.crystal.fitted_model import FittedModel
-    from ellipsoid_planning.crystal.fitting import MoleculeFit
-    from ellipsoid_planning.crystal.structure import CrystalStructure
+    from ellipsoid_planning.crystal.structures.contacts import Contact
+    from ellipsoid_planning.crystal.structures.fitted_model import FittedModel
+    from ellipsoid_planning.crystal.structures.fitting import MoleculeFit
+    from ellipsoid_planning.crystal.structures.structure import CrystalStructure
 
 AUTO = "auto"
 LOOK = 1.25  # contacts up to this factor are reported
@@ -113,10 +113,10 @@ def fit(
     """
     check_outputs(output=output, target=target, magnitudes=magnitudes)
     _check_suffix(magnitudes)
-    from ellipsoid_planning.crystal.fitted_model import FittedModel, SearchSteps
-    from ellipsoid_planning.crystal.fitting import deepest_overlap
-    from ellipsoid_planning.crystal.model_files import locate_data
-    from ellipsoid_planning.crystal.structure import read_structure
+    from ellipsoid_planning.crystal.packing.model_files import locate_data
+    from ellipsoid_planning.crystal.structures.fitted_model import FittedModel, SearchSteps
+    from ellipsoid_planning.crystal.structures.fitting import deepest_overlap
+    from ellipsoid_planning.crystal.structures.structure import read_structure
 
     steps = SearchSteps(shift_step, turn_step_deg, hinge_deg, resolution=resolution)
     with working(f"Fitting {structure}"):
@@ -146,9 +146,9 @@ def _check_suffix(magnitudes: Path | None) -> None:
 def _fitted(
     structure: CrystalStructure, domains: list[str], shape: str, parts: int, scale: str
 ) -> tuple[MoleculeFit, list[Contact]]:
-    from ellipsoid_planning.crystal.contacts import closest_contacts
-    from ellipsoid_planning.crystal.domains import parse_domain
-    from ellipsoid_planning.crystal.fitting import fit_domains, loosened
+    from ellipsoid_planning.crystal.structures.contacts import closest_contacts
+    from ellipsoid_planning.crystal.structures.domains import parse_domain
+    from ellipsoid_planning.crystal.structures.fitting import fit_domains, loosened
 
     parsed = [parse_domain(text) for text in domains]
     fitted = fit_domains(structure, parsed, shape, parts, _number(scale, "--scale"))
@@ -190,7 +190,7 @@ def _warn(model: FittedModel, contacts: list[Contact]) -> None:
 def _calculate(
     structure: CrystalStructure, resolution: float, file: Path, *, solvent: bool
 ) -> None:
-    from ellipsoid_planning.crystal.calculated import calculated_factors, write_mtz
+    from ellipsoid_planning.crystal.structures.calculated import calculated_factors, write_mtz
 
     with working("Calculating structure factors"):
         factors = calculated_factors(structure, resolution, solvent=solvent)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ellipsoid_planning.crystal.contacts import Contact
-    from ellipsoid_planning.crystal.fitting import MoleculeFit
+    from ellipsoid_planning.crystal.structures.contacts import Contact
+    from ellipsoid_planning.crystal.structures.fitting import MoleculeFit
 
 MOST_ROWS = 8
 

@@ -13,8 +13,8 @@ def models() -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from ellipsoid_planning.crystal.model import load_model
-    from ellipsoid_planning.crystal.model_files import bundled_models
+    from ellipsoid_planning.crystal.packing.model import load_model
+    from ellipsoid_planning.crystal.packing.model_files import bundled_models
     from ellipsoid_planning.scenario_files import read_document
 
     table = Table()

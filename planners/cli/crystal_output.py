@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 ARRANGEMENT_SUFFIXES = (".json", ".csv")
 AT_ONCE = 4096

@@ -36,7 +36,7 @@ from planners.cli.terminal import result_console, say
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 FOUND, NOTHING_FREE = 0, 1
 
@@ -85,8 +85,8 @@ def pack(
 
     ellipsoid-planning crystal pack MODEL.yaml --run big --cluster tcp://10.0.0.5:8786
     """
-    from ellipsoid_planning.crystal.model import load_model
-    from ellipsoid_planning.crystal.run_store import run_settings
+    from ellipsoid_planning.crystal.packing.model import load_model
+    from ellipsoid_planning.crystal.phasing.run_store import run_settings
     from planners.cli.crystal_output import arrangements, print_json, save_arrangements
 
     check_outputs(output=output, figure=figure, html=html)
@@ -136,7 +136,7 @@ def _result(
     model: PackingModel, method: Method, found: Candidates, seconds: float
 ) -> dict[str, Any]:
     from ellipsoid_planning import __version__
-    from ellipsoid_planning.crystal.fingerprint import fingerprint
+    from ellipsoid_planning.crystal.packing.fingerprint import fingerprint
 
     return {
         "model": model.name,

@@ -25,8 +25,8 @@ from planners.cli.progress import progress
 from planners.cli.terminal import say, wide_console
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.crystal.potential_candidates import CellSearch
-    from ellipsoid_planning.crystal.ranking import Ranking
+    from ellipsoid_planning.crystal.diffraction.ranking import Ranking
+    from ellipsoid_planning.crystal.packing.potential_candidates import CellSearch
     from planners.cli.crystal_data import Data
     from planners.crystal.parameters import Refinement
     from planners.crystal.phasing import PhasingOutcome
@@ -161,7 +161,7 @@ def phase(
 
     ellipsoid-planning crystal phase MODEL.yaml --target DATA.mtz --threshold 0.3
     """
-    from ellipsoid_planning.crystal.model import load_model
+    from ellipsoid_planning.crystal.packing.model import load_model
     from planners.cli import crystal_phase_report as report
     from planners.cli.crystal_data import load_data
     from planners.cli.crystal_output import print_json, save_json
@@ -202,8 +202,8 @@ def _phased(
     data: Data, best: int, choice: Choice, refinement: Refinement, workplace: Workplace
 ) -> Phased:
     """Search, rank and refine, with what an earlier session of the run has done."""
-    from ellipsoid_planning.crystal.ranking_runs import target_digest
-    from ellipsoid_planning.crystal.run_store import run_settings
+    from ellipsoid_planning.crystal.phasing.ranking_runs import target_digest
+    from ellipsoid_planning.crystal.phasing.run_store import run_settings
 
     model = data.cost.model
     search = choice.search(model)
@@ -224,9 +224,9 @@ def _ranked(
     data: Data, best: int, search: CellSearch | None, working: Session
 ) -> tuple[int, Ranking]:
     """How many arrangements were looked at, and the best that are free."""
-    from ellipsoid_planning.crystal.ranking import rank_listed
-    from ellipsoid_planning.crystal.ranking_runs import RankedArrangements, ranking_of
-    from ellipsoid_planning.crystal.runs import search_pieces
+    from ellipsoid_planning.crystal.diffraction.ranking import rank_listed
+    from ellipsoid_planning.crystal.phasing.ranking_runs import RankedArrangements, ranking_of
+    from ellipsoid_planning.crystal.phasing.runs import search_pieces
 
     model = data.cost.model
     if search is not None:
@@ -242,7 +242,7 @@ def _ranked(
 def _refined(
     data: Data, ranking: Ranking, refinement: Refinement, working: Session
 ) -> PhasingOutcome:
-    from ellipsoid_planning.crystal.run_store import Nowhere
+    from ellipsoid_planning.crystal.phasing.run_store import Nowhere
     from planners.crystal.kept import KeptRefinements
     from planners.crystal.phasing import phase_candidates
 

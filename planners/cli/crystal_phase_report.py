@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def result(data: Data, phased: Phased, refinement: Refinement, seconds: float) -> dict[str, Any]:
     """Everything as data for JSON; see the command's help."""
     from ellipsoid_planning import __version__
-    from ellipsoid_planning.crystal.fingerprint import fingerprint
+    from ellipsoid_planning.crystal.packing.fingerprint import fingerprint
 
     model, outcome = data.cost.model, phased.outcome
     times = {"search": phased.search_seconds, "total": seconds}
@@ -79,7 +79,7 @@ def _candidates(data: Data, phased: Phased) -> list[dict[str, Any]]:
 
 
 def _errors(data: Data, configuration: NDArray[np.float64]) -> dict[str, Any]:
-    from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
+    from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
 
     if data.target is None:
         return {}
@@ -186,7 +186,7 @@ def _candidates_picture(data: Data, phased: Phased, file: Path) -> bytes:
 
 
 def _trends_picture(data: Data, phased: Phased, file: Path) -> bytes:
-    from ellipsoid_planning.crystal.trace import trend
+    from ellipsoid_planning.crystal.phasing.trace import trend
     from planners.view.figures_crystal_trends import picture_of_trends, trends_of
 
     if phased.outcome is None:

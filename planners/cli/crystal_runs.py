@@ -18,8 +18,8 @@ from planners.cli.progress import progress
 from planners.cli.terminal import announce_compilation, say
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.crystal.run_store import RunStore
-    from ellipsoid_planning.crystal.runs import Execute, Piece, Work
+    from ellipsoid_planning.crystal.phasing.run_store import RunStore
+    from ellipsoid_planning.crystal.phasing.runs import Execute, Piece, Work
 
 Model = Annotated[
     str,
@@ -107,7 +107,7 @@ class Session:
         Raises:
             KeyboardInterrupt: after Ctrl-C; what was finished is kept.
         """
-        from ellipsoid_planning.crystal.runs import done
+        from ellipsoid_planning.crystal.phasing.runs import done
 
         announce_compilation()
         with progress(title, len(pieces)) as update:
@@ -134,7 +134,7 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
         EllipsoidPlanningError: the folder cannot be used or holds another run, or the cluster
             cannot be reached.
     """
-    from ellipsoid_planning.crystal.run_store import RunStore
+    from ellipsoid_planning.crystal.phasing.run_store import RunStore
 
     store = None if workplace.run is None else RunStore(workplace.run)
     if store is not None:
@@ -159,7 +159,7 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
 @contextmanager
 def _executor(cluster: str | None, jobs: int | None) -> Iterator[Execute]:
     from ellipsoid_planning.cluster import LOCAL, ClusterError
-    from ellipsoid_planning.crystal.runs import in_threads, on_cluster
+    from ellipsoid_planning.crystal.phasing.runs import in_threads, on_cluster
 
     if cluster is not None and cluster != LOCAL and jobs is not None:
         raise ClusterError("--jobs is for this machine; a cluster's workers have their own threads")

@@ -18,7 +18,7 @@ def schema(
 
     [dim]Example:[/dim] ellipsoid-planning crystal schema > packing-model.schema.json
     """
-    from ellipsoid_planning.crystal.model_format import packing_model_schema, target_schema
+    from ellipsoid_planning.crystal.packing.model_format import packing_model_schema, target_schema
 
     chosen = target_schema() if target else packing_model_schema()
     sys.stdout.write(json.dumps(chosen, indent=2) + "\n")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from rich.table import Table
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 LONGEST_LIST = 10
 
@@ -63,7 +63,7 @@ def show(
     ellipsoid-planning crystal show rabbit-plane --configuration yaw_deg=100,left_ear_deg=3
     --figure cell.png
     """
-    from ellipsoid_planning.crystal.model import load_model
+    from ellipsoid_planning.crystal.packing.model import load_model
     from planners.cli.crystal_output import print_json
 
     check_outputs(figure=figure, html=html)
@@ -89,7 +89,7 @@ def _chosen(
     model: PackingModel, target: str | None, configuration: str | None, number: int | None
 ) -> NDArray[np.float64] | None:
     """The arrangement that the options name, None without any."""
-    from ellipsoid_planning.crystal.model import load_target
+    from ellipsoid_planning.crystal.packing.model import load_target
     from ellipsoid_planning.errors import CrystalError
 
     given = {"target": target, "configuration": configuration, "number": number}
@@ -158,7 +158,7 @@ def _middle(model: PackingModel) -> NDArray[np.float64]:
 
 
 def _summary(model: PackingModel, chosen: NDArray[np.float64] | None) -> dict[str, Any]:
-    from ellipsoid_planning.crystal.fingerprint import fingerprint
+    from ellipsoid_planning.crystal.packing.fingerprint import fingerprint
 
     copies = model.group.order
     summary = {
@@ -201,7 +201,7 @@ def _ranges(model: PackingModel) -> list[dict[str, Any]]:
 
 
 def _arrangement(model: PackingModel, chosen: NDArray[np.float64]) -> dict[str, Any]:
-    from ellipsoid_planning.crystal.meetings import meetings
+    from ellipsoid_planning.crystal.packing.meetings import meetings
 
     operations = [operation.triplet() for operation in model.group.operations]
     return {

@@ -12,7 +12,7 @@ from planners.cli.outputs import check_outputs
 from planners.cli.terminal import say, working
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.crystal.space_group import SpaceGroup
+    from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 
 YES, NO = 0, 1
 
@@ -81,7 +81,7 @@ def show(
 
     report = group_report.show(group)
     if output is not None:
-        from ellipsoid_planning.crystal.group_text import print_group
+        from ellipsoid_planning.crystal.symmetry.group_text import print_group
         from planners.view.writing import write_whole
 
         write_whole(output, print_group(group).encode())
@@ -202,8 +202,8 @@ def cosets(
 
 
 def _group(name: str | None, file: Path | None) -> SpaceGroup:
-    from ellipsoid_planning.crystal.catalogue import space_group
-    from ellipsoid_planning.crystal.group_text import space_group_from_text
+    from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+    from ellipsoid_planning.crystal.symmetry.group_text import space_group_from_text
     from ellipsoid_planning.errors import CrystalError
 
     if file is not None and name is None:

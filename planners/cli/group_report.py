@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ellipsoid_planning.crystal.space_group import SpaceGroup
+    from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 
 Report = dict[str, Any]
 Rows = list[list[Any]]
@@ -18,7 +18,7 @@ Rows = list[list[Any]]
 
 def show(group: SpaceGroup) -> Report:
     """A group's operations and kind."""
-    from ellipsoid_planning.crystal.names import setting_name, type_name, type_number
+    from ellipsoid_planning.crystal.symmetry.names import setting_name, type_name, type_number
 
     number = group.number or type_number(group.operations)
     return {
@@ -62,8 +62,8 @@ def table(group: SpaceGroup) -> Report:
 
 def subgroups(group: SpaceGroup) -> Report:
     """All subgroups with their classes and types."""
-    from ellipsoid_planning.crystal.names import setting_name, type_name
-    from ellipsoid_planning.crystal.subgroups import all_subgroups, class_count
+    from ellipsoid_planning.crystal.symmetry.names import setting_name, type_name
+    from ellipsoid_planning.crystal.symmetry.subgroups import all_subgroups, class_count
 
     found = all_subgroups(group)
     # Conjugate subgroups are of one type.
@@ -110,7 +110,7 @@ def subgroup_rows(report: Report) -> Rows:
 
 def is_subgroup(group: SpaceGroup, numbers: list[int]) -> Report:
     """Whether the elements with these numbers are a subgroup."""
-    from ellipsoid_planning.crystal import elements
+    from ellipsoid_planning.crystal.symmetry import elements
 
     verdict = elements.is_subgroup(group, [number - 1 for number in numbers])
     report = {**_asked(group, numbers), "subgroup": verdict.holds}
@@ -119,7 +119,7 @@ def is_subgroup(group: SpaceGroup, numbers: list[int]) -> Report:
 
 def is_normal(group: SpaceGroup, numbers: list[int]) -> Report:
     """Whether the elements with these numbers are a normal subgroup."""
-    from ellipsoid_planning.crystal import elements
+    from ellipsoid_planning.crystal.symmetry import elements
 
     verdict = elements.is_normal(group, [number - 1 for number in numbers])
     report = {**_asked(group, numbers), "subgroup": verdict.product is None}
@@ -136,7 +136,7 @@ def answer_rows(report: Report) -> Rows:
 
 def cosets(group: SpaceGroup, numbers: list[int]) -> Report:
     """Both coset spaces of the subgroup with these elements."""
-    from ellipsoid_planning.crystal.cosets import coset_spaces
+    from ellipsoid_planning.crystal.symmetry.cosets import coset_spaces
 
     spaces = coset_spaces(group, [number - 1 for number in numbers])
     return {
@@ -159,7 +159,7 @@ def coset_rows(report: Report) -> Rows:
 
 
 def _asked(group: SpaceGroup, numbers: list[int]) -> Report:
-    from ellipsoid_planning.crystal.elements import checked_elements
+    from ellipsoid_planning.crystal.symmetry.elements import checked_elements
 
     chosen = checked_elements(group, [number - 1 for number in numbers])
     return {"name": group.name, "order": group.order, **_coset(group, chosen)}

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from ompl import base as ob
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.trace import Trace
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.packing.model import PackingModel
+from ellipsoid_planning.crystal.phasing.trace import Trace
 from planners.spaces import StateAccess, write_vector
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ from dataclasses import astuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.run_store import Keeper
-from ellipsoid_planning.crystal.trace import Trace
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.phasing.run_store import Keeper
+from ellipsoid_planning.crystal.phasing.trace import Trace
 
 from .parameters import Refinement
 from .refine import Refined, refine

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
 from ellipsoid_planning.errors import CrystalError
 
 from .parameters import Refinement

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.polish import neighbourhood, polish
-from ellipsoid_planning.crystal.trace import Trace
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.phasing.polish import neighbourhood, polish
+from ellipsoid_planning.crystal.phasing.trace import Trace
 from ellipsoid_planning.errors import CrystalError
 
 from .parameters import Refinement

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ompl import base as ob
 from ompl import geometric as og
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.trace import Trace
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.phasing.trace import Trace
 from planners import bindings
 
 from .goal import Box, Budget, FreeArrangements, LowCost

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ellipsoid_planning.crystal.copies import Copy, copies, middle_of
-from ellipsoid_planning.crystal.overlaps import Overlap, overlaps
+from ellipsoid_planning.crystal.packing.copies import Copy, copies, middle_of
+from ellipsoid_planning.crystal.packing.overlaps import Overlap, overlaps
 from ellipsoid_planning.errors import CrystalError
 from planners.view.crystal_colours import operation_colours
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
     Array = NDArray[np.float64]
 
@@ -193,7 +193,7 @@ def pretty_group(model: PackingModel) -> str:
     name = model.group.name
     if model.dimension == 2 or model.group.number is None:
         return name
-    from ellipsoid_planning.crystal.catalogue import gemmi
+    from ellipsoid_planning.crystal.symmetry.catalogue import gemmi
 
     found = gemmi().find_spacegroup_by_name(name)
     # In gemmi's symbols spaces part the axes: P 4 3 2 and P 43 3 2.

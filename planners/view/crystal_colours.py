@@ -9,7 +9,7 @@ from planners.view import colours
 from planners.view.links import link_shades
 
 if TYPE_CHECKING:
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 OVERLAP = "#f0e442"  # yellow, as in the thesis; no copy has it
 OVERLAP_EDGE = "#8a7f00"

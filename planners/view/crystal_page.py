@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from ellipsoid_planning.crystal.copies import Copy
-    from ellipsoid_planning.crystal.model import PackingModel
-    from ellipsoid_planning.crystal.overlaps import Overlap
+    from ellipsoid_planning.crystal.packing.copies import Copy
+    from ellipsoid_planning.crystal.packing.model import PackingModel
+    from ellipsoid_planning.crystal.packing.overlaps import Overlap
 
     Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.crystal.copies import Copy
+    from ellipsoid_planning.crystal.packing.copies import Copy
     from planners.view.crystal_cell import DrawnCell
 
     Array = NDArray[np.float64]

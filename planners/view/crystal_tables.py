@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from rich.table import Table
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
     Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def error_columns(
     model: PackingModel, configurations: ArrayLike, target: ArrayLike
 ) -> dict[str, list[float]]:
     """E_h, MAE, E_max and, where the molecule shifts, MAE₂ of candidates (m, K), by title."""
-    from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
+    from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
 
     found = [arrangement_errors(model, one, target) for one in np.asarray(configurations)]
     columns = {

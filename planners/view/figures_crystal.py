@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 PLANE_WIDTH = 7.0  # [inches]
 PLANE_HEIGHTS = (3.5, 10.0)  # the least and the most

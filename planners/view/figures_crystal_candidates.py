@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
 PANEL = (3.1, {2: 3.9, 3: 2.9})  # width, and height by dimension [inches]
 LEAST_WIDTH = 9.0

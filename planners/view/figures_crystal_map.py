@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ellipsoid_planning.crystal.model import PackingModel
-    from ellipsoid_planning.crystal.potential import GaussianPotential
+    from ellipsoid_planning.crystal.packing.model import PackingModel
+    from ellipsoid_planning.crystal.packing.potential import GaussianPotential
 
     Array = NDArray[np.float64]
 

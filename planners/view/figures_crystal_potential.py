@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-    from ellipsoid_planning.crystal.model import PackingModel
+    from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+    from ellipsoid_planning.crystal.packing.model import PackingModel
 
     Array = NDArray[np.float64]
 

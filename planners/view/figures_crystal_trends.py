@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ellipsoid_planning.crystal.trace import Trend
+    from ellipsoid_planning.crystal.phasing.trace import Trend
 
     Array = NDArray[np.float64]
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.model_files import bundled_models
-from ellipsoid_planning.crystal.model_format import packing_model_schema, target_schema
-from ellipsoid_planning.crystal.runs import search_pieces
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.packing.model_files import bundled_models
+from ellipsoid_planning.crystal.packing.model_format import packing_model_schema, target_schema
+from ellipsoid_planning.crystal.phasing.runs import search_pieces
 from planners.cli.main import app
 from tests.cli.command import COMMAND, refused, run
 

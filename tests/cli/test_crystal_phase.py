@@ -8,9 +8,9 @@ import time
 import pytest
 from typer.testing import CliRunner
 
-from ellipsoid_planning.crystal.magnitude_writing import write_magnitudes
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
+from ellipsoid_planning.crystal.diffraction.magnitude_writing import write_magnitudes
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from planners.cli.main import app
 from tests.cli.command import COMMAND, refused
 

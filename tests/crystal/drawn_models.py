@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.model_build import model_of
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.model_build import model_of
 from ellipsoid_planning.scenario_origin import Origin
 
 NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")

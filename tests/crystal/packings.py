@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ellipsoid_planning.crystal.model import PackingModel
-from ellipsoid_planning.crystal.model_build import model_of
+from ellipsoid_planning.crystal.packing.model import PackingModel
+from ellipsoid_planning.crystal.packing.model_build import model_of
 from ellipsoid_planning.scenario_files import parse_document
 from tests.oracles import signed_gaps
 

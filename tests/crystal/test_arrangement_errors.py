@@ -3,14 +3,14 @@ import math
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.arrangement_errors import (
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.phasing.arrangement_errors import (
     arrangement_errors,
     motion_error,
     plain_errors,
 )
-from ellipsoid_planning.crystal.body_fit import fit_bodies
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.placed_bodies import Bodies
+from ellipsoid_planning.crystal.phasing.body_fit import fit_bodies
+from ellipsoid_planning.crystal.phasing.placed_bodies import Bodies
 
 from .diffraction import random_configurations
 from .packings import one_body

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.potential import GaussianPotential
-from ellipsoid_planning.crystal.trace import Trace, trend
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.packing.potential import GaussianPotential
+from ellipsoid_planning.crystal.phasing.trace import Trace, trend
 from ellipsoid_planning.errors import CrystalError
 from planners.view.crystal_tables import candidates_rows, candidates_table, error_columns
 from planners.view.figures_crystal import picture_of_cell

@@ -12,8 +12,8 @@ import umsgpack
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Ellipse as EllipsePatch
 
-from ellipsoid_planning.crystal.copies import copies, middle_of
-from ellipsoid_planning.crystal.overlaps import overlaps
+from ellipsoid_planning.crystal.packing.copies import copies, middle_of
+from ellipsoid_planning.crystal.packing.overlaps import overlaps
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry import Ellipsoid
 from planners.view import crystal_colours as palette

@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
-from ellipsoid_planning.crystal.body_fit import fit_bodies
-from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.equivalents import Equivalents
-from ellipsoid_planning.crystal.indistinguishable import indistinguishable
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.operation import Operation
-from ellipsoid_planning.crystal.placed_bodies import Bodies, body_rates
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
+from ellipsoid_planning.crystal.phasing.body_fit import fit_bodies
+from ellipsoid_planning.crystal.phasing.equivalents import Equivalents
+from ellipsoid_planning.crystal.phasing.indistinguishable import indistinguishable
+from ellipsoid_planning.crystal.phasing.placed_bodies import Bodies, body_rates
+from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+from ellipsoid_planning.crystal.symmetry.operation import Operation
 
 from .diffraction import lattice_points, magnitudes, random_configurations
 from .packings import model_from, one_body

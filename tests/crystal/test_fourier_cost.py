@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.reflections import all_reflections
-from ellipsoid_planning.crystal.structure_factors import structure_factors
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import Magnitudes, simulate
+from ellipsoid_planning.crystal.diffraction.reflections import all_reflections
+from ellipsoid_planning.crystal.diffraction.structure_factors import structure_factors
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from ellipsoid_planning.errors import CrystalError
 
 NAMES = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.potential import GaussianPotential
-from ellipsoid_planning.crystal.potential_candidates import (
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.packing.potential import GaussianPotential
+from ellipsoid_planning.crystal.packing.potential_candidates import (
     candidate_counts,
     candidates_by_potential,
     cells_of,

@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.model_build import model_of
-from ellipsoid_planning.crystal.potential import GaussianPotential
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.packing.model_build import model_of
+from ellipsoid_planning.crystal.packing.potential import GaussianPotential
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import gaussian_overlap

@@ -142,7 +142,7 @@ def test_unknown_groups(name, words):
 
 
 def test_without_gemmi_the_plane_groups_remain(monkeypatch):
-    from ellipsoid_planning.crystal import catalogue
+    from ellipsoid_planning.crystal.symmetry import catalogue
 
     monkeypatch.setitem(__import__("sys").modules, "gemmi", None)
     for cached in (catalogue.reference_group, catalogue._by_symbol):

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ellipsoid_planning.crystal import space_group
-from ellipsoid_planning.crystal.cosets import coset_spaces
-from ellipsoid_planning.crystal.elements import is_normal, is_subgroup
-from ellipsoid_planning.crystal.subgroups import all_subgroups, class_count
+from ellipsoid_planning.crystal.symmetry.cosets import coset_spaces
+from ellipsoid_planning.crystal.symmetry.elements import is_normal, is_subgroup
+from ellipsoid_planning.crystal.symmetry.subgroups import all_subgroups, class_count
 from ellipsoid_planning.errors import CrystalError
 
 # Order, subgroups, conjugacy classes, normal subgroups.

@@ -3,7 +3,7 @@
 import pytest
 
 from ellipsoid_planning.crystal import SpaceGroup, space_group, space_group_from_text
-from ellipsoid_planning.crystal.group_text import parse_cosets, print_cosets, print_group
+from ellipsoid_planning.crystal.symmetry.group_text import parse_cosets, print_cosets, print_group
 from ellipsoid_planning.errors import ScenarioError
 
 THESIS = """\

@@ -7,9 +7,9 @@ import pytest
 import spglib
 
 from ellipsoid_planning.crystal import Operation, space_group
-from ellipsoid_planning.crystal.names import setting_name, type_name, type_number
-from ellipsoid_planning.crystal.plane_catalogue import PLANE_GROUPS
-from ellipsoid_planning.crystal.subgroups import all_subgroups
+from ellipsoid_planning.crystal.symmetry.names import setting_name, type_name, type_number
+from ellipsoid_planning.crystal.symmetry.plane_catalogue import PLANE_GROUPS
+from ellipsoid_planning.crystal.symmetry.subgroups import all_subgroups
 
 # spglib warns of how it reports errors, which it does not do here.
 pytestmark = pytest.mark.filterwarnings("ignore:.*OLD_ERROR_HANDLING:DeprecationWarning")

@@ -4,12 +4,15 @@ import gemmi
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
-from ellipsoid_planning.crystal.magnitude_writing import write_magnitudes
-from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.reflections import all_reflections
-from ellipsoid_planning.crystal.structure_factors import reflections_of, structure_factors
+from ellipsoid_planning.crystal.diffraction.magnitude_files import read_magnitudes
+from ellipsoid_planning.crystal.diffraction.magnitude_writing import write_magnitudes
+from ellipsoid_planning.crystal.diffraction.magnitudes import Magnitudes, simulate
+from ellipsoid_planning.crystal.diffraction.reflections import all_reflections
+from ellipsoid_planning.crystal.diffraction.structure_factors import (
+    reflections_of,
+    structure_factors,
+)
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 from tests.crystal.packings import one_body
 

@@ -4,11 +4,11 @@ import re
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.model_build import target_of
-from ellipsoid_planning.crystal.model_files import bundled_models, locate_data
-from ellipsoid_planning.crystal.model_format import packing_model_schema
-from ellipsoid_planning.crystal.ranges import Range
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.model_build import target_of
+from ellipsoid_planning.crystal.packing.model_files import bundled_models, locate_data
+from ellipsoid_planning.crystal.packing.model_format import packing_model_schema
+from ellipsoid_planning.crystal.packing.ranges import Range
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 from ellipsoid_planning.scenario_files import parse_document
 from tests.crystal.packings import model_from, one_body_text

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.molecule import molecule_of
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.packing.molecule import molecule_of
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import molecule as kernels

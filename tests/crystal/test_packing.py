@@ -4,10 +4,10 @@ import math
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.unit_cell import UnitCell
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
 from tests.crystal.packings import model_from, one_body, one_body_text, smallest_gap
 

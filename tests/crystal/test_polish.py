@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.polish import neighbourhood, polish
-from ellipsoid_planning.crystal.structure_factors import reflections_of
-from ellipsoid_planning.crystal.trace import Trace, trend
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.diffraction.structure_factors import reflections_of
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
+from ellipsoid_planning.crystal.phasing.polish import neighbourhood, polish
+from ellipsoid_planning.crystal.phasing.trace import Trace, trend
 from ellipsoid_planning.errors import CrystalError
 
 MODELS = ("rabbit-plane", "rabbit-p1", "rabbit-p212121")

@@ -5,12 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal import ranking
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import Magnitudes, simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.ranking import (
+from ellipsoid_planning.crystal.diffraction import ranking
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import Magnitudes, simulate
+from ellipsoid_planning.crystal.diffraction.ranking import (
     QUANTUM,
     Ranker,
     chunks,
@@ -19,6 +17,8 @@ from ellipsoid_planning.crystal.ranking import (
     rank_free,
     rank_listed,
 )
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from ellipsoid_planning.errors import CrystalError
 from tests.crystal.packings import one_body
 from tests.crystal.test_structure_factors import drawers

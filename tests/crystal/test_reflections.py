@@ -6,16 +6,16 @@ import gemmi
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.model import load_model
-from ellipsoid_planning.crystal.reflections import (
+from ellipsoid_planning.crystal.diffraction.reflections import (
     absent,
     all_reflections,
     representatives,
     unique_reflections,
 )
-from ellipsoid_planning.crystal.structure_factors import reflections_of
-from ellipsoid_planning.crystal.unit_cell import UnitCell
+from ellipsoid_planning.crystal.diffraction.structure_factors import reflections_of
+from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
 
 CELLS = [

@@ -9,29 +9,29 @@ import time
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fingerprint import (
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.diffraction.ranking import rank
+from ellipsoid_planning.crystal.packing.fingerprint import (
     differences,
     fingerprint,
     received_model,
     sent_model,
 )
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.gaussian_mixture import GaussianMixture
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.model_files import bundled_models
-from ellipsoid_planning.crystal.potential_candidates import candidates_by_potential
-from ellipsoid_planning.crystal.potential_runs import (
+from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.model_files import bundled_models
+from ellipsoid_planning.crystal.packing.potential_candidates import candidates_by_potential
+from ellipsoid_planning.crystal.phasing.potential_runs import (
     PotentialMinima,
     candidates_of,
     cell_pieces,
     cell_search,
 )
-from ellipsoid_planning.crystal.ranking import rank
-from ellipsoid_planning.crystal.ranking_runs import RankedArrangements, ranking_of
-from ellipsoid_planning.crystal.run_store import DIGEST, RunStore, run_settings
-from ellipsoid_planning.crystal.runs import (
+from ellipsoid_planning.crystal.phasing.ranking_runs import RankedArrangements, ranking_of
+from ellipsoid_planning.crystal.phasing.run_store import DIGEST, RunStore, run_settings
+from ellipsoid_planning.crystal.phasing.runs import (
     AT_A_TIME,
     MOST_PIECES,
     FreeArrangements,

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.domains import assign, find_hinges, parse_domain
-from ellipsoid_planning.crystal.model_files import locate_model
-from ellipsoid_planning.crystal.structure import read_structure
+from ellipsoid_planning.crystal.packing.model_files import locate_model
+from ellipsoid_planning.crystal.structures.domains import assign, find_hinges, parse_domain
+from ellipsoid_planning.crystal.structures.structure import read_structure
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 
 CELL = "CRYST1   20.000   30.000   40.000  90.00  90.00  90.00 P 21 21 21    4\n"

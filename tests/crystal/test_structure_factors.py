@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from scipy import special
 
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.model_files import locate_model
-from ellipsoid_planning.crystal.reflections import absent, all_reflections
-from ellipsoid_planning.crystal.structure_factors import (
+from ellipsoid_planning.crystal.diffraction.reflections import absent, all_reflections
+from ellipsoid_planning.crystal.diffraction.structure_factors import (
     StructureFactors,
     reflections_of,
     roots_of_unity,
     structure_factors,
 )
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.model_files import locate_model
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.kernels import bessel
 from tests.crystal import diffraction

@@ -11,13 +11,20 @@ import pytest
 from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
-from ellipsoid_planning.crystal.calculated import calculated_factors, factors_at, write_mtz
-from ellipsoid_planning.crystal.catalogue import space_group
-from ellipsoid_planning.crystal.contacts import closest_contacts, contact_factor
-from ellipsoid_planning.crystal.distinct_poses import distinct_poses, euler_zxz
-from ellipsoid_planning.crystal.domains import parse_domain
-from ellipsoid_planning.crystal.fitted_model import FittedModel, SearchSteps
-from ellipsoid_planning.crystal.fitting import (
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitude_files import read_magnitudes
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.packing.model_build import model_of, target_of
+from ellipsoid_planning.crystal.structures.calculated import (
+    calculated_factors,
+    factors_at,
+    write_mtz,
+)
+from ellipsoid_planning.crystal.structures.contacts import closest_contacts, contact_factor
+from ellipsoid_planning.crystal.structures.distinct_poses import distinct_poses, euler_zxz
+from ellipsoid_planning.crystal.structures.domains import parse_domain
+from ellipsoid_planning.crystal.structures.fitted_model import FittedModel, SearchSteps
+from ellipsoid_planning.crystal.structures.fitting import (
     clusters,
     deepest_overlap,
     enclosing,
@@ -25,13 +32,10 @@ from ellipsoid_planning.crystal.fitting import (
     loosened,
     moments,
 )
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitude_files import read_magnitudes
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.model_build import model_of, target_of
-from ellipsoid_planning.crystal.solvent import solvent_factors
-from ellipsoid_planning.crystal.structure import Atoms, CrystalStructure, read_structure
-from ellipsoid_planning.crystal.unit_cell import UnitCell
+from ellipsoid_planning.crystal.structures.solvent import solvent_factors
+from ellipsoid_planning.crystal.structures.structure import Atoms, CrystalStructure, read_structure
+from ellipsoid_planning.crystal.symmetry.catalogue import space_group
+from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.geometry.dual import gap

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.arrangement_errors import arrangement_errors
-from ellipsoid_planning.crystal.collisions import GridSearch
-from ellipsoid_planning.crystal.fourier_cost import FourierCost
-from ellipsoid_planning.crystal.magnitudes import simulate
-from ellipsoid_planning.crystal.model import load_model, load_target
-from ellipsoid_planning.crystal.polish import neighbourhood, polish
+from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
+from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+from ellipsoid_planning.crystal.packing.grid_search import GridSearch
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
+from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
+from ellipsoid_planning.crystal.phasing.polish import neighbourhood, polish
 from ellipsoid_planning.errors import CrystalError, PlannerError
 from planners.crystal import tree
 from planners.crystal.parameters import Refinement

@@ -1,0 +1,1 @@
+"""Diffraction: reflections, structure factors, data, the Fourier cost and ranking by it."""

@@ -1,0 +1,1 @@
+"""Phasing by packing: refinement, errors, and long searches in pieces."""

@@ -1,0 +1,1 @@
+"""Packing models of real molecules: their structures, domains and ellipsoids."""

@@ -171,7 +171,10 @@ def squares(factors, target, weights, scaled, limit, magnitudes):
 
 @kernel
 def offer(best, number, key):
-    """Insert an arrangement where it belongs among the ``best``, if it does; the last one goes."""
+    """Insert an arrangement where it belongs among the ``best``, if it does; the last one goes.
+
+    Of several with one key, only that of the lowest number stays.
+    """
     numbers, keys = best
     place = keys.size
     while place > 0 and (
@@ -180,7 +183,12 @@ def offer(best, number, key):
         or (keys[place - 1] == key and numbers[place - 1] > number)
     ):
         place -= 1
+    if place > 0 and keys[place - 1] == key:
+        return
     if place == keys.size:
+        return
+    if keys[place] == key:
+        numbers[place] = number
         return
     for i in range(keys.size - 1, place, -1):
         keys[i], numbers[i] = keys[i - 1], numbers[i - 1]

@@ -36,7 +36,10 @@ AT_ONCE = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Ranking:
-    """The best arrangements, best first; of equal costs the lower number first.
+    """The best arrangements, best first.
+
+    Of those with one cost only the lowest number is kept: symmetry and homometric twins make many
+    that diffraction cannot tell apart, and all lead to one when they are refined.
 
     Attributes:
         numbers: (B,), of arrangements in the grid.
@@ -66,7 +69,7 @@ def merged(rankings: Iterable[Ranking], best: int = 10) -> Ranking:
     _check_best(best)
     numbers = np.concatenate([ranking.numbers for ranking in given])
     costs = np.concatenate([ranking.costs for ranking in given])
-    order = np.lexsort((numbers, costs))[:best]
+    order = _distinct(numbers, costs, best)
     configurations = np.vstack([ranking.configurations for ranking in given])[order]
     looked_at = sum(ranking.looked_at for ranking in given)
     return Ranking(numbers[order], configurations, costs[order], looked_at)
@@ -206,8 +209,16 @@ def rank_listed(cost: FourierCost, configurations: ArrayLike, best: int = 10) ->
     whole = cost.structure.checked(configurations)
     quantum = quantum_of(cost)
     costs = np.round(cost.values(whole) / quantum) * quantum
-    numbers = np.lexsort((np.arange(len(costs)), costs))[:best].astype(np.int64)
+    numbers = _distinct(np.arange(len(costs)), costs, best)
     return Ranking(numbers, whole[numbers], costs[numbers], len(costs))
+
+
+def _distinct(numbers: Integers, costs: Array, best: int) -> Integers:
+    """Places of the ``best`` costs, each with the lowest of the numbers that share it."""
+    order = np.lexsort((numbers, costs)).astype(np.int64)
+    first = np.ones(len(order), bool)
+    first[1:] = costs[order][1:] != costs[order][:-1]
+    return order[first][:best]
 
 
 def rank_free(

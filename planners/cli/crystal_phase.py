@@ -143,12 +143,12 @@ def phase(
     what diffraction cannot tell apart.
 
     The JSON result has [bold]found[/bold], configurations and free (how many were looked at, and
-    are free), arrangement (the one found: configuration by key, angles in degrees, cost,
-    cost_share of an empty cell's, free, candidate, errors), candidates (best first: number in the
-    grid, configuration, cost, errors), refined (what became of them), threshold (a cost), target,
-    model, group, keys, fingerprint, seed, time (search, refinement and total, in seconds, of this
-    session) and version. Errors: E_h (of the motion), MAE_deg and E_max_deg (of angles),
-    MAE_shifts.
+    are free), arrangement (the one found: configuration by key, angles in degrees, cost, cost_share
+    of an empty cell's, free, candidate counted from 1, errors), candidates (best first: number in
+    the grid, configuration, cost, errors), refined (what became of them), threshold (a cost),
+    target, refine, model, group, keys, fingerprint, seed, time (search, refinement and total, in
+    seconds, of this session) and version. Errors: E_h (of the motion), MAE_deg and E_max_deg (of
+    angles), MAE_shifts.
 
     [dim]Exit codes: 0 found, 1 not found, 2 bad input, 130 interrupted.[/dim]
 

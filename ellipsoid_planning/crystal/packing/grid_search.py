@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.crystal.packing.collisions import shape_rows, watched
+from ellipsoid_planning.crystal.packing.grid import combinations
 from ellipsoid_planning.crystal.packing.model import PackingModel
 from ellipsoid_planning.errors import CrystalError
 from ellipsoid_planning.kernels import molecule, packing, packing_search
@@ -21,7 +22,6 @@ Integers = NDArray[np.int64]
 
 # Room for this many arrangements is made at a time, or for those of one base pose.
 FOUND_AT_ONCE = 1 << 18
-
 
 MOST_POSES = 10**6  # of a limb: a table has them all
 MOST_COMBINATIONS = 10**8  # of all joints' values, of pairs of limbs' poses
@@ -104,14 +104,10 @@ class GridSearch:
         base = self.model.molecule.base_count
         whole = self.model.molecule
         values = [self.model.grid.joint_values[joint] for joint in chain]
-        grid = (
-            np.stack(np.meshgrid(*values, indexing="ij"), -1).reshape(-1, len(chain))
-            if chain
-            else np.zeros((1, 0))
-        )
+        grid = combinations(values)
         found = np.zeros((len(grid), molecule.FRAME))
-        found[:, [0, 4, 8]] = 1.0
         if not chain:
+            found[:, [0, 4, 8]] = 1.0
             return found
         for row, digits in zip(found, grid, strict=True):
             configuration = np.zeros(len(whole.coordinates))

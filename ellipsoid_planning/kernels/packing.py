@@ -7,7 +7,8 @@ every copy that can touch is looked at and no other. Two parts are apart only wh
 direction is proved, see `separation`.
 
 Bodies are rows of ``BODY`` numbers (centre, A, inverse of A, radius; see layout), their smallest
-semi-axis stands at ``INSCRIBED``. Operations are rows of ``OPERATION`` numbers: Q row-major, t.
+semi-axis stands at ``INSCRIBED``. Operations are frames: Q row-major, t; what
+is posed in one is its image.
 """
 
 import math
@@ -26,11 +27,10 @@ from .layout import (
     PLACED_MATRIX,
     ROUNDING,
 )
-from .molecule import FRAME, place_frames
+from .molecule import FRAME, place_frames, pose_part
 from .separation import CONVERGE, DECIDE, separation
 
 INSCRIBED = BODY_RADIUS + 1
-OPERATION = 12
 
 
 @kernel
@@ -57,24 +57,6 @@ def apart(bodies, i, copy, j, required):
 
 
 @kernel
-def turned(operations, g, bodies, j, copy):
-    """Fill ``copy[0]`` with body j under operation g, no lattice vector added."""
-    for row in range(3):
-        a, b, c = operations[g, 3 * row], operations[g, 3 * row + 1], operations[g, 3 * row + 2]
-        copy[0, PLACED_CENTRE + row] = (
-            a * bodies[j, BODY_CENTRE]
-            + b * bodies[j, BODY_CENTRE + 1]
-            + c * bodies[j, BODY_CENTRE + 2]
-            + operations[g, 9 + row]
-        )
-        for column in range(3):
-            m = BODY_MATRIX + column
-            copy[0, PLACED_MATRIX + 3 * row + column] = (
-                a * bodies[j, m] + b * bodies[j, m + 3] + c * bodies[j, m + 6]
-            )
-
-
-@kernel
 def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, required, copy):
     """Whether body i is apart from every copy of body j but the molecule's own.
 
@@ -83,7 +65,7 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
         i: a row of ``bodies``.
         j: another one, or the same.
         same: whether they are the same part; then half of the translations suffices.
-        operations: (m, OPERATION), the identity first.
+        operations: (m, FRAME), the identity first.
         basis: (3, 3), B.
         inverse: (3, 3), its inverse.
         reaches: (3,), the lengths of the rows of ``inverse``.
@@ -93,7 +75,7 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
     reach = bodies[i, BODY_RADIUS] + bodies[j, BODY_RADIUS] + required
     slack = reach * (1.0 + ROUNDING)
     for g in range(operations.shape[0]):
-        turned(operations, g, bodies, j, copy)
+        pose_part(operations, g, bodies, j, copy, 0)  # no lattice vector yet
         x = copy[0, PLACED_CENTRE] - bodies[i, BODY_CENTRE]
         y = copy[0, PLACED_CENTRE + 1] - bodies[i, BODY_CENTRE + 1]
         z = copy[0, PLACED_CENTRE + 2] - bodies[i, BODY_CENTRE + 2]
@@ -143,17 +125,10 @@ def own_apart(bodies, i, j, required, copy):
 @kernel
 def pose_body(frame, k, shapes, p, bodies, i):
     """Fill row i of ``bodies`` with ``shapes[p]`` (BODY) in the frame ``frame[k]`` (FRAME)."""
+    pose_part(frame, k, shapes, p, bodies, i)
     for row in range(3):
         a, b, c = frame[k, 3 * row], frame[k, 3 * row + 1], frame[k, 3 * row + 2]
-        bodies[i, BODY_CENTRE + row] = (
-            a * shapes[p, BODY_CENTRE]
-            + b * shapes[p, BODY_CENTRE + 1]
-            + c * shapes[p, BODY_CENTRE + 2]
-            + frame[k, 9 + row]
-        )
         for column in range(3):
-            m = BODY_MATRIX + column
-            bodies[i, m + 3 * row] = a * shapes[p, m] + b * shapes[p, m + 3] + c * shapes[p, m + 6]
             # The inverse of R A is A⁻¹ Rᵀ.
             m = BODY_INVERSE + 3 * column
             bodies[i, m + row] = a * shapes[p, m] + b * shapes[p, m + 1] + c * shapes[p, m + 2]

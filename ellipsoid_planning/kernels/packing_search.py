@@ -104,7 +104,6 @@ def search_grid(
             continue
         pairs[:] = UNKNOWN
         alone[:] = UNKNOWN
-        number = 0
         level = 0
         for c in range(joints):
             digits[c] = 0

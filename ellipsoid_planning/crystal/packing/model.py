@@ -16,7 +16,8 @@ from ellipsoid_planning.crystal.packing.molecule import Molecule
 from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 from ellipsoid_planning.errors import CrystalError
-from ellipsoid_planning.kernels import layout, packing
+from ellipsoid_planning.kernels import layout
+from ellipsoid_planning.kernels.molecule import FRAME
 from ellipsoid_planning.scenario_origin import Origin
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ class PackingModel:
     def crystal(self) -> tuple[Array, Array, Array, Array]:
         """What kernels read: operations (m, 12), basis, its inverse (3, 3), reaches (3,)."""
         rotations, translations = self.group.cartesian(self.cell)
-        operations = np.zeros((len(rotations), packing.OPERATION))
+        operations = np.zeros((len(rotations), FRAME))
         n = self.dimension
         for row, rotation, translation in zip(operations, rotations, translations, strict=True):
             whole = np.eye(3)

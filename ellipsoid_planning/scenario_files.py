@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +21,18 @@ MOST_ENTRIES = 1_000_000
 
 def bundled_scenarios() -> dict[str, Path]:
     """Return the bundled scenario files by name, in alphabetical order."""
+    return {file.stem: file for file in bundled_files("*.yaml")}
+
+
+def bundled_files(pattern: str) -> list[Path]:
+    """Return the bundled files of a pattern below the folder of scenarios, in order."""
     folder = Path(__file__).parent
     # A wheel carries the files inside the package; a checkout has them beside it.
-    places = (folder / "_scenarios", folder.parent / "scenarios")
-    for place in places:
-        files = sorted(place.glob("*.yaml"))
+    for place in (folder / "_scenarios", folder.parent / "scenarios"):
+        files = sorted(place.glob(pattern))
         if files:
-            return {file.stem: file for file in files}
-    return {}
+            return files
+    return []
 
 
 def locate(path_or_name: str | Path) -> Path:
@@ -36,24 +41,36 @@ def locate(path_or_name: str | Path) -> Path:
     Raises:
         ScenarioError: if there is neither such a file nor such a bundled scenario.
     """
+    return located(path_or_name, bundled_scenarios(), "scenario", "scenario file")
+
+
+def located(path_or_name: str | Path, bundled: Mapping[str, Path], kind: str, file: str) -> Path:
+    """Return the file that a path or the name of a ``bundled`` one points at.
+
+    Args:
+        path_or_name: what the user gave.
+        bundled: files by name.
+        kind: what is looked for, in messages.
+        file: what is expected instead of a folder, in messages.
+
+    Raises:
+        ScenarioError: if there is neither such a file nor such a bundled one.
+    """
     path = Path(path_or_name)
     if path.is_file():
         return path
-    bundled = bundled_scenarios()
     text = str(path_or_name)
     if text in bundled:
         return bundled[text]
     if path.is_dir():
-        raise ScenarioError("expected a scenario file, got a folder", file=text)
-    raise ScenarioError(_not_found(text, bundled), file=text)
-
-
-def _not_found(text: str, bundled: dict[str, Path]) -> str:
-    problem = "no such file, and no bundled scenario of this name"
-    close = difflib.get_close_matches(Path(text).stem, list(bundled), n=3, cutoff=0.5)
+        raise ScenarioError(f"expected a {file}, got a folder", file=text)
+    problem = f"no such file, and no bundled {kind} of this name"
+    close = difflib.get_close_matches(path.stem, list(bundled), n=3, cutoff=0.5)
     if close:
-        return f"{problem}; did you mean {' or '.join(close)}?"
-    return f"{problem}; bundled are {', '.join(bundled) or 'none'}"
+        problem = f"{problem}; did you mean {' or '.join(close)}?"
+    else:
+        problem = f"{problem}; bundled are {', '.join(bundled) or 'none'}"
+    raise ScenarioError(problem, file=text)
 
 
 def read_document(path: Path) -> tuple[Any, Origin]:

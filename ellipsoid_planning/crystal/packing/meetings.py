@@ -75,15 +75,10 @@ Motion = tuple[int, tuple[int, ...], NDArray[np.float64], NDArray[np.float64]]
 def _close_motions(model: PackingModel, first: Ellipsoid, second: Ellipsoid) -> Iterator[Motion]:
     """Operation, lattice vector, rotation and translation that bring the second body close."""
     reach = float(first.semi_axes.max() + second.semi_axes.max())
-    width = reach * np.linalg.norm(np.linalg.inv(model.cell.basis), axis=1) + 1e-9
     for index, (turn, shift) in enumerate(zip(*model.group.cartesian(model.cell), strict=True)):
         away = turn @ second.centre + shift - first.centre
-        middle = model.cell.fractional(away)
-        low, high = np.ceil(-width - middle).astype(int), np.floor(width - middle).astype(int)
-        for lattice in itertools.product(*map(range, low.tolist(), (high + 1).tolist())):
-            moved = model.cell.cartesian(lattice)
-            if np.linalg.norm(away + moved) <= reach:
-                yield index, lattice, turn, shift + moved
+        for lattice in model.cell.lattice_within(away, reach):
+            yield index, lattice, turn, shift + model.cell.cartesian(lattice)
 
 
 def _inverse(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.crystal.packing.copies import image
 from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
 from ellipsoid_planning.geometry.dual import gap
@@ -59,21 +60,20 @@ def closest_contacts(
     rotations, translations = group.cartesian(cell)
     found: dict[tuple[object, ...], Contact] = {}
     for index, (rotation, translation) in enumerate(zip(rotations, translations, strict=True)):
-        copies = [_image(body, rotation, translation) for body in bodies]
+        copies = [image(body, rotation, translation) for body in bodies]
         for (i, first), (j, second) in itertools.product(enumerate(bodies), enumerate(copies)):
             reach = largest * float(first.semi_axes.max() + second.semi_axes.max())
             away = second.centre - first.centre
-            for shift in _lattice_within(cell, away, reach):
-                if index == 0 and not np.any(shift):
+            for shift in cell.lattice_within(away, reach):
+                if index == 0 and not any(shift):
                     continue
-                moved = second.transform(np.eye(len(away)), cell.basis @ shift)
+                moved = second.transform(np.eye(len(away)), cell.cartesian(shift))
                 factor = contact_factor(first, moved)
                 key = (min(i, j), max(i, j), round(factor, 9))
                 if factor <= largest and key not in found:
-                    places = tuple(int(k) for k in shift)
                     names = first.name, second.name
                     away_by = gap(first, moved).value
-                    found[key] = Contact(*names, index, places, factor, away_by)
+                    found[key] = Contact(*names, index, shift, factor, away_by)
     return sorted(found.values(), key=lambda contact: contact.factor)
 
 
@@ -105,25 +105,3 @@ def _whitened(first: Ellipsoid, second: Ellipsoid) -> Array:
     """The second body's shape matrix where the first body is the unit ball."""
     inward = first.rotation.T / first.semi_axes[:, None]
     return np.asarray(inward @ second.shape_matrix @ inward.T)
-
-
-def _image(body: Ellipsoid, rotation: Array, translation: Array) -> Ellipsoid:
-    """The image under an operation that may reflect; ellipsoids are symmetric."""
-    turned = rotation @ body.rotation
-    if np.linalg.det(turned) < 0.0:
-        turned = -turned
-    return Ellipsoid(rotation @ body.centre + translation, turned, body.semi_axes, body.name)
-
-
-def _lattice_within(cell: UnitCell, away: Array, reach: float) -> Iterator[NDArray[np.int64]]:
-    """The lattice translations t with |away + t| <= reach, by coordinates."""
-    middle = -cell.fractional(away)
-    spans = reach * np.linalg.norm(cell.reciprocal, axis=0)
-    ranges = [
-        range(int(np.ceil(m - span)), int(np.floor(m + span)) + 1)
-        for m, span in zip(middle, spans, strict=True)
-    ]
-    for place in itertools.product(*ranges):
-        shift = np.array(place)
-        if np.linalg.norm(away + cell.basis @ shift) <= reach:
-            yield shift

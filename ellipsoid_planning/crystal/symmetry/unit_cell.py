@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -108,6 +110,22 @@ class UnitCell:
     def cartesian(self, points: ArrayLike) -> NDArray[np.float64]:
         """The Cartesian points of fractional coordinates, both (..., n)."""
         return np.asarray(points, dtype=float) @ self.basis.T
+
+    def lattice_within(self, away: ArrayLike, reach: float) -> Iterator[tuple[int, ...]]:
+        """The lattice vectors v, in cells, that bring a point near: |away + B v| <= reach.
+
+        Args:
+            away: (n,), where the point is, in Cartesian coordinates.
+            reach: how near.
+        """
+        place = np.asarray(away, dtype=float)
+        middle = self.fractional(place)
+        # Coordinates are rounded; the distance decides.
+        width = reach * np.linalg.norm(self.reciprocal, axis=0) + 1e-9
+        low, high = np.ceil(-width - middle).astype(int), np.floor(width - middle).astype(int)
+        for lattice in itertools.product(*map(range, low.tolist(), (high + 1).tolist())):
+            if np.linalg.norm(place + self.cartesian(lattice)) <= reach:
+                yield lattice
 
 
 def _checked_lengths(lengths: ArrayLike) -> NDArray[np.float64]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json as json_format
 import math
 import sys
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from planners.cli.crystal_fit_tables import contacts_table, domains_table, fit_report
-from planners.cli.outputs import check_outputs
+from planners.cli.outputs import check_outputs, print_json
 from planners.cli.terminal import say, working
 
 if TYPE_CHECKING:
@@ -131,7 +130,7 @@ def fit(
     _write(model.target(), target)
     if json:
         report = {**fit_report(fitted, contacts), "model": model.model(), "target": model.target()}
-        sys.stdout.write(json_format.dumps(report, indent=2, allow_nan=False) + "\n")
+        print_json(report)
         return
     _print(fitted, contacts, model, whole=output is None)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,12 +17,6 @@ if TYPE_CHECKING:
 
 ARRANGEMENT_SUFFIXES = (".json", ".csv")
 AT_ONCE = 4096
-
-
-def print_json(result: Mapping[str, Any]) -> None:
-    """Print a result on stdout."""
-    sys.stdout.write(json.dumps(result, indent=2, allow_nan=False) + "\n")
-    sys.stdout.flush()
 
 
 def save_json(result: Mapping[str, Any], output: Path) -> None:

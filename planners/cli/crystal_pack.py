@@ -30,7 +30,7 @@ from planners.cli.crystal_runs import (
     Workplace,
     session,
 )
-from planners.cli.outputs import check_outputs
+from planners.cli.outputs import check_outputs, print_json
 from planners.cli.terminal import result_console, say
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def pack(
     """
     from ellipsoid_planning.crystal.packing.model import load_model
     from ellipsoid_planning.crystal.phasing.run_store import run_settings
-    from planners.cli.crystal_output import arrangements, print_json, save_arrangements
+    from planners.cli.crystal_output import arrangements, save_arrangements
 
     check_outputs(output=output, figure=figure, html=html)
     _check_suffixes(output, figure)

@@ -20,7 +20,7 @@ from planners.cli.crystal_candidates import (
     by_potential,
 )
 from planners.cli.crystal_runs import Cluster, Jobs, Json, Model, Run, Session, Workplace, session
-from planners.cli.outputs import check_outputs
+from planners.cli.outputs import check_outputs, print_json
 from planners.cli.progress import progress
 from planners.cli.terminal import say, wide_console
 
@@ -164,7 +164,7 @@ def phase(
     from ellipsoid_planning.crystal.packing.model import load_model
     from planners.cli import crystal_phase_report as report
     from planners.cli.crystal_data import load_data
-    from planners.cli.crystal_output import print_json, save_json
+    from planners.cli.crystal_output import save_json
     from planners.crystal.parameters import Refinement
 
     check_outputs(output=output, figure=figure, trends=trends, html=html)

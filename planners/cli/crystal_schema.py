@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from typing import Annotated
 
 import typer
+
+from planners.cli.outputs import print_json
 
 
 def schema(
@@ -21,4 +21,4 @@ def schema(
     from ellipsoid_planning.crystal.packing.model_format import packing_model_schema, target_schema
 
     chosen = target_schema() if target else packing_model_schema()
-    sys.stdout.write(json.dumps(chosen, indent=2) + "\n")
+    print_json(chosen)

@@ -64,7 +64,7 @@ def show(
     --figure cell.png
     """
     from ellipsoid_planning.crystal.packing.model import load_model
-    from planners.cli.crystal_output import print_json
+    from planners.cli.outputs import print_json
 
     check_outputs(figure=figure, html=html)
     if figure is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.outputs import check_outputs
+from planners.cli.outputs import check_outputs, print_json
 from planners.cli.terminal import say, working
 
 if TYPE_CHECKING:
@@ -242,9 +242,8 @@ def _write(csv: Path | None, rows: list[list[Any]]) -> None:
 def _print(report: dict[str, Any], text: Any, *, json: bool) -> None:
     """The report as JSON, or a text or table for people."""
     if json:
-        import json as json_format
-
-        text = json_format.dumps(report, indent=2)
+        print_json(report)
+        return
     if isinstance(text, str):
         sys.stdout.write(text + "\n")
         sys.stdout.flush()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json as json_format
 import math
-import sys
 from typing import Annotated
 
 import typer
 
+from planners.cli.outputs import print_json
 from planners.cli.terminal import result_console, stages, working_with_kernels
 
 
@@ -61,8 +60,7 @@ def measure(
     with stages(f"Measuring {problem.name}") as say:
         found = measured(problem, seed, budget, on_progress=say)
     if json:
-        sys.stdout.write(json_format.dumps(found.to_dict(), indent=2, allow_nan=False) + "\n")
-        sys.stdout.flush()
+        print_json(found.to_dict())
         return
     from planners.cli.measure_tables import measurement_tables
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json as json_format
 import math
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.outputs import check_outputs
+from planners.cli.outputs import check_outputs, print_json
 from planners.cli.terminal import result_console, say, working
 
 if TYPE_CHECKING:
@@ -76,8 +74,7 @@ def minkowski(
             figures_minkowski.figure(summary, figure)
         say(f"Wrote {figure}")
     if json:
-        sys.stdout.write(json_format.dumps(summary.to_dict(), indent=2, allow_nan=False) + "\n")
-        sys.stdout.flush()
+        print_json(summary.to_dict())
         return
     from planners.cli.minkowski_tables import summary_tables
 

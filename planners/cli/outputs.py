@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
+import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning import atomic
 from ellipsoid_planning.errors import EllipsoidPlanningError
@@ -77,6 +80,12 @@ def _check_output(option: str, path: Path) -> None:
         raise EllipsoidPlanningError(
             f"{option} {path}: the folder {str(folder)!r} cannot be written to; name another one"
         )
+
+
+def print_json(document: Mapping[str, Any]) -> None:
+    """Print a result as JSON on stdout; it must hold no number that JSON cannot write."""
+    sys.stdout.write(json.dumps(document, indent=2, allow_nan=False) + "\n")
+    sys.stdout.flush()
 
 
 def write_csv(result: PlanResult, output: Path) -> None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json as json_format
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from planners.cli.outputs import QUATERNION, check_outputs
+from planners.cli.outputs import QUATERNION, check_outputs, print_json
 from planners.cli.terminal import result_console, say, working
 
 if TYPE_CHECKING:
@@ -82,9 +80,7 @@ def rotations(
             measured = measure(made)
     _write(made, output, figure)
     if json and measured is not None:
-        found = {**measured.to_dict(), "grid": grid}
-        sys.stdout.write(json_format.dumps(found, indent=2, allow_nan=False) + "\n")
-        sys.stdout.flush()
+        print_json({**measured.to_dict(), "grid": grid})
         return
     result_console().print(_table(grid, made, measured))
 

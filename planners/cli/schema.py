@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import sys
+from planners.cli.outputs import print_json
 
 
 def schema() -> None:
     """Print the JSON schema of the scenario format."""
     from ellipsoid_planning.scenario import scenario_schema
 
-    sys.stdout.write(json.dumps(scenario_schema(), indent=2) + "\n")
+    print_json(scenario_schema())

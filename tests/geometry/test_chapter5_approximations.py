@@ -139,9 +139,29 @@ def test_directions_are_touched(seed, dimension):
     for side in ("inner", "outer"):
         body = kurzhanski_sum(first, second, u, side).ellipsoid
         assert float(body.support(u)) == pytest.approx(exact, rel=1e-13)
+        if side == "inner" and not inner_member_exists(first, second, u):
+            with pytest.raises(GeometryError, match="not between"):
+                kurzhanski_difference(first, second, u, side)
+            continue
         body = kurzhanski_difference(first, second, u, side).ellipsoid
         gap = float(first.support(u) - second.support(u))
         assert float(body.support(u)) == pytest.approx(gap, rel=1e-13)
+
+
+def inner_member_exists(arena, part, u):
+    """Whether (1 - m)(S1 - S2 / m) is an ellipsoid at the m that touches in the direction u."""
+    m = np.linalg.norm(part.matrix.T @ u) / np.linalg.norm(arena.matrix.T @ u)
+    stretch = np.linalg.norm(np.linalg.solve(arena.matrix, part.matrix), ord=2)
+    return stretch**2 < m < 1.0
+
+
+def test_no_inner_member_touches_where_the_part_is_thin_and_the_arena_is_not():
+    arena = Ellipsoid.from_semi_axes([8.0, 5.0])
+    part = Ellipsoid.from_semi_axes([2.0, 0.1])
+    u = np.array([0.0, 1.0])
+    assert not inner_member_exists(arena, part, u)
+    with pytest.raises(GeometryError, match="not between"):
+        kurzhanski_difference(arena, part, u, "inner")
 
 
 @settings(deadline=None, max_examples=15)

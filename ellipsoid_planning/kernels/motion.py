@@ -122,11 +122,18 @@ def _parabola(motion, placed, rx, ry, rz, ux, uy, uz):
 
 @kernel
 def _reach(value, slope, bend):
-    """Largest Δ ≥ 0 with value + slope Δ − bend Δ²/2 ≥ 0, a hair less."""
+    """Largest Δ ≥ 0 with value + slope Δ − bend Δ²/2 ≥ 0, a hair less.
+
+    For value > 0 and bend ≥ 0. Either form adds numbers of one sign, so its relative error is a few
+    units of rounding, which the hair (1e-6) covers; root − |slope| would be noise where value is
+    tiny against slope².
+    """
     root = math.sqrt(slope * slope + 2.0 * bend * value)
-    if root - slope <= 0.0:
+    if slope < 0.0:
+        return 0.999999 * 2.0 * value / (root - slope)
+    if bend == 0.0:
         return math.inf
-    return 0.999999 * 2.0 * value / (root - slope)
+    return 0.999999 * (slope + root) / bend
 
 
 @inlined

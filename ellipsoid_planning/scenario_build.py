@@ -6,16 +6,19 @@ Checks what depends on the dimension and on the robot; see also `scenario_entrie
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.orientation_forms import heading_from_degrees
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.scenario_blocks import Body
+from ellipsoid_planning.scenario_bodies import QuickBodies, quick_bodies
 from ellipsoid_planning.scenario_entries import Entries
 from ellipsoid_planning.scenario_format import Bounds, ScenarioModel
 from ellipsoid_planning.scenario_format_robot import Pose
@@ -26,6 +29,7 @@ from ellipsoid_planning.scenario_robot import robot_of
 from ellipsoid_planning.world import World
 
 SAME_ORIENTATION = 1e-12
+KINDS = {"obstacles": "obstacle", "arena": "arena"}
 
 
 def scenario_parts(data: Any, origin: Origin) -> dict[str, Any]:
@@ -37,24 +41,32 @@ def scenario_parts(data: Any, origin: Origin) -> dict[str, Any]:
     if not isinstance(data, Mapping):
         problem = f"expected a mapping with the keys of a scenario, got {shown(data)}"
         raise origin.error((), problem)
+    quick = {}
+    for key, kind in KINDS.items():
+        found = quick_bodies(data.get(key), data.get("dimension"), kind)
+        if found is not None:
+            quick[key] = found
     try:
-        model = ScenarioModel.model_validate(dict(data))
+        model = ScenarioModel.model_validate(
+            {key: value for key, value in data.items() if key not in quick}
+        )
     except ValidationError as error:
         raise scenario_error(error, origin) from None
-    return _Builder(Entries(model.dimension, origin)).build(model)
+    return _Builder(Entries(model.dimension, origin), quick).build(model)
 
 
 class _Builder:
     """Builds the objects of one document."""
 
-    def __init__(self, entries: Entries) -> None:
+    def __init__(self, entries: Entries, quick: Mapping[str, QuickBodies]) -> None:
         self._entries = entries
+        self._quick = quick
 
     def build(self, model: ScenarioModel) -> dict[str, Any]:
         entries = self._entries
         low, high = self._box(model.bounds)
-        obstacles = entries.bodies(model.obstacles, ("obstacles",), "obstacle")
-        arenas = entries.bodies(model.arena, ("arena",), "arena")
+        obstacles = self._bodies(model.obstacles, "obstacles")
+        arenas = self._bodies(model.arena, "arena")
         robot = robot_of(entries, model.robot, model.start)
         start = self._configuration(model.start, robot, "start")
         goal = self._configuration(model.goal, robot, "goal")
@@ -70,6 +82,14 @@ class _Builder:
             "planner": model.planner.model_dump() if model.planner else {},
             "origin": entries.origin(),
         }
+
+    def _bodies(self, bodies: Sequence[Body], key: str) -> tuple[Ellipsoid, ...]:
+        if key not in self._quick:
+            return self._entries.bodies(bodies, (key,), KINDS[key])
+        made, written = self._quick[key]
+        for body, orientation in written:
+            self._entries.remember(body, orientation)
+        return made
 
     def _box(self, bounds: Bounds) -> tuple[list[float], list[float]]:
         low = self._entries.vector(bounds.low, ("bounds", "low"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,9 +35,7 @@ class Entries:
 
     def origin(self) -> Origin:
         """The document's origin, with the orientations that were remembered."""
-        return Origin(
-            self._origin.file, self._origin.values, self._origin.keys, tuple(self._orientations)
-        )
+        return replace(self._origin, orientations=tuple(self._orientations))
 
     def remember(self, owner: object, written: Mapping[str, Any]) -> None:
         """Keep the orientation of an object as it was written, to write it so again."""

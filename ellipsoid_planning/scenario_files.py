@@ -1,22 +1,20 @@
-"""Scenario files: which are bundled, where a name points, and YAML with line and column."""
+"""Scenario files: which are bundled, where a name points, and what they hold."""
 
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ellipsoid_planning.errors import ScenarioError
+from ellipsoid_planning.plain_yaml import plain_data
 from ellipsoid_planning.scenario_origin import Origin
-from ellipsoid_planning.scenario_origin import Path as EntryPath
+from ellipsoid_planning.scenario_places import read_yaml
 
 SUFFIXES = (".yaml", ".yml")
-DUPLICATE = re.compile(r'found duplicate key "(.*?)"')
-POSITION = re.compile(r"position (\d+)")
-
-MOST_ENTRIES = 1_000_000
+# Beyond, a text may have more entries than are read.
+MOST_CHARACTERS = 50_000_000
 
 
 def bundled_scenarios() -> dict[str, Path]:
@@ -91,80 +89,7 @@ def read_document(path: Path) -> tuple[Any, Origin]:
 
 def parse_document(text: str, file: str | None = None) -> tuple[Any, Origin]:
     """Return YAML text as plain Python data, and where each entry stands; see `read_document`."""
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    origin = Origin(file)
-    try:
-        loaded = YAML(typ="rt", pure=True).load(text)
-        return _plain(loaded, (), origin), origin
-    except YAMLError as error:
-        raise _syntax_error(error, text, file) from None
-    except RecursionError:
-        raise ScenarioError("the YAML is nested too deeply or contains itself", file=file) from None
-    except ValueError as error:
-        raise ScenarioError(f"broken YAML: {error}", file=file) from None
-
-
-def _syntax_error(error: Exception, text: str, file: str | None) -> ScenarioError:
-    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-    message = str(getattr(error, "problem", None) or error).splitlines()[0]
-    duplicate = DUPLICATE.search(message)
-    field = None
-    problem = f"broken YAML: {message}; correct the syntax here"
-    if duplicate:
-        field = duplicate.group(1)
-        problem = "this key is written twice in one mapping; remove one of them"
-    line, column = (mark.line + 1, mark.column + 1) if mark else _place(str(error), text)
-    return ScenarioError(problem, file=file, field=field, line=line, column=column)
-
-
-def _place(message: str, text: str) -> tuple[int | None, int | None]:
-    """Return line and column of an unreadable character, which only has a position."""
-    position = POSITION.search(message)
-    if position is None:
-        return None, None
-    before = text[: int(position.group(1))]
-    return before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
-
-
-def _plain(value: Any, path: EntryPath, origin: Origin) -> Any:
-    """Return `value` without ruamel's types, noting the places of its entries in `origin`."""
-    if len(origin.values) > MOST_ENTRIES:
-        raise ScenarioError(
-            f"expected at most {MOST_ENTRIES} entries, aliases written out; split the scenario",
-            file=origin.file,
-        )
-    if isinstance(value, dict):
-        return {key: _entry(value, key, path, origin) for key in value}
-    if isinstance(value, (list, tuple)):
-        return [_item(value, index, path, origin) for index in range(len(value))]
-    if value is None or isinstance(value, bool):
-        return value
-    for kind in (int, float, str):
-        if isinstance(value, kind):
-            return kind(value)
-    # ruamel's booleans with anchors are no bool; everything else is left for validation.
-    return bool(value) if type(value).__name__ == "ScalarBoolean" else value
-
-
-def _entry(mapping: Any, key: Any, path: EntryPath, origin: Origin) -> Any:
-    inner = (*path, key)
-    places = getattr(mapping, "lc", None)
-    if places is not None and places.data and key in places.data:
-        key_line, key_column, line, column = places.data[key]
-        _note(origin.keys, inner, key_line, key_column)
-        _note(origin.values, inner, line, column)
-    return _plain(mapping[key], inner, origin)
-
-
-def _item(sequence: Any, index: int, path: EntryPath, origin: Origin) -> Any:
-    inner = (*path, index)
-    places = getattr(sequence, "lc", None)
-    if places is not None and places.data and index in places.data:
-        _note(origin.values, inner, *places.data[index][:2])
-    return _plain(sequence[index], inner, origin)
-
-
-def _note(places: Any, path: EntryPath, line: int, column: int) -> None:
-    places[path] = (line + 1, column + 1)
+    data = plain_data(text) if len(text) <= MOST_CHARACTERS else None
+    if data is None:
+        data, _ = read_yaml(text, file)
+    return data, Origin(file, text)

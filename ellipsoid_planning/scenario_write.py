@@ -119,7 +119,5 @@ def _pose_orientation(scenario: Scenario, turn: NDArray[np.float64]) -> dict[str
 
 
 def _orientation(origin: Origin, owner: object, rotation: NDArray[np.float64]) -> dict[str, Any]:
-    for built, written in origin.orientations:
-        if built is owner:
-            return copy.deepcopy(dict(written))
-    return form_of_rotation(rotation)
+    written = origin.written_orientation(owner)
+    return form_of_rotation(rotation) if written is None else copy.deepcopy(dict(written))

@@ -44,10 +44,10 @@ def yaw_from_rotation(rotation: ArrayLike) -> float:
 def rotation_from_quaternion(quaternion: ArrayLike) -> NDArray[np.float64]:
     """Return the (3, 3) rotation of a quaternion (x, y, z, w) of any positive length."""
     q = np.asarray(quaternion, dtype=float)
-    length = float(np.linalg.norm(q)) if q.shape == (4,) else math.nan
+    length = math.sqrt(q.dot(q)) if q.shape == (4,) else math.nan
     if not (length > 0.0 and math.isfinite(length)):
         raise GeometryError(f"expected a non-zero quaternion (x, y, z, w), got {q.tolist()}")
-    x, y, z, w = q / length
+    x, y, z, w = (q / length).tolist()  # numbers of Python, for numpy's take longer
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],

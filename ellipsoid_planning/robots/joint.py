@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry.orientation import check_rotation
+from ellipsoid_planning.geometry.orientation import check_rotation, rotation_from_yaw
+from ellipsoid_planning.robots import joint_limits
+from ellipsoid_planning.sizes import MOST_LENGTH, check_coordinates
 
 REVOLUTE = "revolute"
 CONTINUOUS = "continuous"
@@ -22,6 +24,7 @@ LIMITED = (REVOLUTE, PRISMATIC)
 # How many numbers of a configuration a joint of each type takes.
 VALUE_COUNTS = {REVOLUTE: 1, CONTINUOUS: 1, PRISMATIC: 1, BALL: 4, FIXED: 0}
 
+TINY = 1e-100
 UNIT_ROUNDING = 4.0 * float(np.finfo(float).eps)
 
 
@@ -41,8 +44,12 @@ class Joint:
         rotation: (n, n), by default the identity.
         axis: unit vector in the joint's frame, (n,); by default x, as in URDF. In the plane,
             revolute and continuous joints turn anticlockwise and have none (None).
-        lower, upper: the limits of a revolute [rad] or prismatic joint, finite; a continuous
-            joint has [-pi, pi], the others none (0, 0).
+        lower, upper: the limits of a revolute [rad] or prismatic joint; a continuous joint has
+            [-pi, pi], the others none (0, 0).
+        notice: what was made of the limits, for whoever wrote them; "" if nothing.
+
+    Limits of a revolute joint that both lie a thousand turns or more from 0 mean none: the joint
+    becomes continuous. A joint whose range is at most 1e-12 becomes a fixed one.
 
     Raises:
         GeometryError: if a value does not fit the type or the dimension.
@@ -57,6 +64,7 @@ class Joint:
     axis: NDArray[np.float64] | None = None
     lower: float = 0.0
     upper: float = 0.0
+    notice: str = field(default="", init=False)
 
     @classmethod
     def of(
@@ -83,6 +91,7 @@ class Joint:
         position = np.array(self.position, dtype=float)
         if position.shape not in ((2,), (3,)) or not np.all(np.isfinite(position)):
             raise self._error(f"expected a position of 2 or 3 finite numbers, got {position}")
+        check_coordinates(position, f"joint {self.name!r}: position")
         n = len(position)
         if self.type == BALL and n == 2:
             raise self._error("there are no ball joints in the plane; use a continuous joint")
@@ -100,6 +109,9 @@ class Joint:
         if self.type in (BALL, FIXED) or (n == 2 and self.type != PRISMATIC):
             return None
         axis = np.eye(n)[0] if self.axis is None else np.array(self.axis, dtype=float)
+        largest = float(np.max(np.abs(axis))) if axis.shape == (n,) else 0.0
+        if 0.0 < largest < math.inf and not TINY < largest < 1.0 / TINY:
+            axis = axis / largest  # squares of its numbers would vanish, or overflow
         length = float(np.linalg.norm(axis)) if axis.shape == (n,) else 0.0
         if not 0.0 < length < math.inf:
             raise self._error(f"expected an axis of {n} numbers other than zero, got {axis}")
@@ -107,13 +119,44 @@ class Joint:
         return axis if abs(length - 1.0) <= UNIT_ROUNDING else axis / length
 
     def _check_limits(self) -> None:
+        if self.type in LIMITED and not self.lower < self.upper:
+            raise self._error(f"expected lower < upper, got {self.lower:g} and {self.upper:g}")
+        if self.type == REVOLUTE and joint_limits.is_unlimited(self.lower, self.upper):
+            self._become(CONTINUOUS, joint_limits.unlimited_notice(self.lower, self.upper))
+        elif self.type == REVOLUTE:
+            problem = joint_limits.revolute_problem(self.lower, self.upper)
+            if problem is not None:
+                raise self._error(problem)
+        elif self.type == PRISMATIC and not max(-self.lower, self.upper) <= MOST_LENGTH:
+            raise self._error(
+                f"expected the limits of a prismatic joint within {MOST_LENGTH:g}, got "
+                f"{self.lower:g} and {self.upper:g}; give the lengths that it can move by"
+            )
+        if self.type in LIMITED and self.upper - self.lower <= joint_limits.NEGLIGIBLE:
+            self._fix(self.lower)
         if self.type == CONTINUOUS:
             object.__setattr__(self, "lower", -math.pi)
             object.__setattr__(self, "upper", math.pi)
-        if self.type in LIMITED and not -math.inf < self.lower < self.upper < math.inf:
-            raise self._error(
-                f"expected finite limits, lower < upper, got {self.lower:g} and {self.upper:g}"
-            )
+
+    def _become(self, kind: str, notice: str) -> None:
+        object.__setattr__(self, "type", kind)
+        object.__setattr__(self, "notice", f"joint {self.name!r}: {notice}")
+
+    def _fix(self, value: float) -> None:
+        """Make this a fixed joint where its value was."""
+        notice = joint_limits.fixed_notice(self.lower, self.upper)
+        if self.type == PRISMATIC:
+            shift = value * np.asarray(self.axis)
+            self._keep("position", self.position + self.rotation @ shift)
+        elif len(self.position) == 2:
+            self._keep("rotation", self.rotation @ rotation_from_yaw(value))
+        else:
+            turn = np.array(joint_limits.about(tuple(np.asarray(self.axis).tolist()), value))
+            self._keep("rotation", self.rotation @ turn)
+        self._become(FIXED, notice)
+        object.__setattr__(self, "axis", None)
+        object.__setattr__(self, "lower", 0.0)
+        object.__setattr__(self, "upper", 0.0)
 
     def _error(self, problem: str) -> GeometryError:
         return GeometryError(f"joint {self.name!r}: {problem}")

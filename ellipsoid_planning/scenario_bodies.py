@@ -11,17 +11,16 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.many_ellipsoids import many_ellipsoids
-from ellipsoid_planning.geometry.orientation import rotation_from_quaternion, rotation_from_yaw
 from ellipsoid_planning.orientation_forms import (
     PLANAR_FORMS,
     SPATIAL_FORMS,
-    heading_from_degrees,
-    quaternion_from_form,
 )
+from ellipsoid_planning.orientation_lists import rotations_from_forms
 from ellipsoid_planning.sizes import LEAST_LENGTH, MOST_LENGTH
 
 KEYS = frozenset({"name", "semi_axes", "position", "orientation"})
@@ -57,34 +56,42 @@ def quick_bodies(data: Any, dimension: Any, kind: str) -> QuickBodies | None:
 
 def _bodies(data: list[Any], dimension: int, kind: str) -> QuickBodies:
     origin = [0.0] * dimension
-    straight = np.eye(dimension)
-    names, axes, centres, turns, written = [], [], [], [], []
-    for index, body in enumerate(data, start=1):
+    names, axes, centres = [], [], []
+    turned: dict[str, tuple[list[int], list[Any]]] = {}
+    for index, body in enumerate(data):
         if type(body) is not dict or not body.keys() <= KEYS:
             raise _OddError
         name = body.get("name", "")
         if type(name) is not str:
             raise _OddError
-        names.append(name or f"{kind} {index}")
+        names.append(name or f"{kind} {index + 1}")
         axes.append(body["semi_axes"])
         centres.append(body.get("position", origin))
-        form = _form(body["orientation"], dimension) if "orientation" in body else {}
-        written.append(form)
-        turns.append(_rotation(form) if form else straight)
-    _check_numbers(axes, dimension, LEAST_LENGTH)
-    _check_numbers(centres, dimension, -MOST_LENGTH)
+        if "orientation" in body:
+            form, value = _form(body["orientation"], dimension)
+            places, values = turned.setdefault(form, ([], []))
+            places.append(index)
+            values.append(value)
     shape = (len(names), dimension)
+    rotations = np.tile(np.eye(dimension), (len(names), 1, 1))
+    for form, (places, values) in turned.items():
+        rotations[places] = rotations_from_forms(form, values)
     made = many_ellipsoids(
-        np.array(centres, dtype=float).reshape(shape),
-        np.array(turns, dtype=float).reshape(*shape, dimension),
-        np.array(axes, dtype=float).reshape(shape),
+        _numbers(centres, dimension, -MOST_LENGTH).reshape(shape),
+        rotations,
+        _numbers(axes, dimension, LEAST_LENGTH).reshape(shape),
         names,
     )
-    return made, [(body, form) for body, form in zip(made, written, strict=True) if form]
+    written = [
+        (made[place], {form: value})
+        for form, (places, values) in turned.items()
+        for place, value in zip(places, values, strict=True)
+    ]
+    return made, written
 
 
-def _check_numbers(vectors: list[Any], size: int, least: float) -> None:
-    """Check lists of ``size`` numbers from ``least`` to the greatest length."""
+def _numbers(vectors: list[Any], size: int, least: float) -> NDArray[np.float64]:
+    """The numbers of lists of ``size`` ones from ``least`` to the greatest length."""
     if not set(map(type, vectors)) <= {list} or not set(map(len, vectors)) <= {size}:
         raise _OddError
     numbers = list(chain.from_iterable(vectors))
@@ -93,40 +100,31 @@ def _check_numbers(vectors: list[Any], size: int, least: float) -> None:
     array = np.array(numbers, dtype=float)
     if not ((array >= least) & (array <= MOST_LENGTH)).all():
         raise _OddError
+    return array
 
 
-def _form(orientation: Any, dimension: int) -> dict[str, Any]:
-    """An orientation as it was written, its numbers as floats."""
+def _form(orientation: Any, dimension: int) -> tuple[str, Any]:
+    """The form of an orientation, and its value with numbers as floats."""
     if type(orientation) is not dict or len(orientation) != 1:
         raise _OddError
     ((form, value),) = orientation.items()
     if form not in (PLANAR_FORMS if dimension == 2 else SPATIAL_FORMS):
         raise _OddError
     if form == "yaw_deg":
-        return {form: _number(value)}
+        return form, _vector([value], 1)[0]
     if form == "axis_angle":
         if type(value) is not dict or value.keys() != {"axis", "angle_deg"}:
             raise _OddError
-        angle = _number(value["angle_deg"])
-        return {form: {"axis": _vector(value["axis"], 3), "angle_deg": angle}}
-    return {form: _vector(value, VECTOR_FORMS[form])}
-
-
-def _rotation(form: dict[str, Any]) -> Any:
-    ((kind, value),) = form.items()
-    if kind == "yaw_deg":
-        return rotation_from_yaw(heading_from_degrees(value))
-    return rotation_from_quaternion(quaternion_from_form(kind, value))
+        (angle,) = _vector([value["angle_deg"]], 1)
+        return form, {"axis": _vector(value["axis"], 3), "angle_deg": angle}
+    return form, _vector(value, VECTOR_FORMS[form])
 
 
 def _vector(value: Any, size: int) -> list[float]:
-    if type(value) is not list or len(value) != size:
+    if type(value) is not list or len(value) != size or not set(map(type, value)) <= NUMBERS:
         raise _OddError
-    return [_number(number) for number in value]
-
-
-def _number(value: Any) -> float:
+    numbers = list(map(float, value))
     # The difference is 0 but for infinity and nan.
-    if type(value) not in NUMBERS or value - value != 0:
+    if any(number - number for number in numbers):
         raise _OddError
-    return float(value)
+    return numbers

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,23 +19,12 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ellipsoid_planning import __version__, atomic
+from ellipsoid_planning.array_members import BROKEN, PackedArray, packed_array, read_member
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from ellipsoid_planning.numbers_shown import shown
 
 _SUFFIX = ".npy"
-_NUMBERS = ("<f8", "<i8", "|b1", "<i4", "<u2")
 _REMEDY = "name another file, or delete this one to make it anew"
-# What zipfile, zlib and json raise for bytes that are not what they should be.
-_BROKEN = (
-    zipfile.BadZipFile,
-    zlib.error,
-    ValueError,
-    KeyError,
-    EOFError,
-    NotImplementedError,
-    RuntimeError,
-    OverflowError,
-    MemoryError,
-)
 
 
 @dataclass(frozen=True)
@@ -73,36 +60,43 @@ class Document:
         kind: what it is.
         file: its name, for messages.
         header: data that JSON can hold.
-        arrays: by name.
+        arrays: by name, not unpacked yet.
     """
 
     kind: FileKind
     file: str
     header: Mapping[str, Any]
-    arrays: Mapping[str, NDArray[Any]]
+    arrays: Mapping[str, PackedArray]
 
     def number(self, place: str, entry: Mapping[str, Any], most: int = 1 << 62) -> int:
         """The count ``entry[name]`` of a place ``….name``, from 0 to ``most``."""
         name = place.rsplit(".", 1)[-1]
         value = entry.get(name)
         if type(value) is not int or not 0 <= value <= most:
-            raise self.error(f"{place}: expected a count, got {value!r}")
+            raise self.error(f"{place}: expected a count, got {shown(value)}")
         return value
 
     def array(self, name: str, kind: type, *shape: int | None) -> NDArray[Any]:
-        """An array of the header's file, of the given type and shape; None fits any length."""
-        found = self.arrays.get(name)
-        if found is None:
+        """An array of the header's file, of the given type and shape; None fits any length.
+
+        It is unpacked after its type and shape were found to be those.
+        """
+        packed = self.arrays.get(name)
+        if packed is None:
             raise self.error(f"{name}: this array is missing")
-        fits = len(found.shape) == len(shape) and all(
-            want in (None, have) for want, have in zip(shape, found.shape, strict=True)
+        fits = len(packed.shape) == len(shape) and all(
+            want in (None, have) for want, have in zip(shape, packed.shape, strict=True)
         )
-        if found.dtype != np.dtype(kind) or not fits:
+        if packed.dtype != np.dtype(kind) or not fits:
             wanted = ", ".join("any" if want is None else str(want) for want in shape)
             raise self.error(
                 f"{name}: expected {np.dtype(kind)} numbers of shape ({wanted}),"
-                f" got {found.dtype} {found.shape}"
+                f" got {packed.dtype} {packed.shape}"
             )
+        try:
+            found = packed.read()
+        except (OSError, *BROKEN) as error:
+            raise self.error(f"{name}: {error}") from None
         if found.dtype.kind == "f" and not np.isfinite(found).all():
             raise self.error(f"{name}: expected finite numbers")
         return found
@@ -196,32 +190,35 @@ def read_document(kind: FileKind, path: str | Path) -> Document:
 
 def _read(
     kind: FileKind, path: str | Path, *, arrays: bool
-) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+) -> tuple[dict[str, Any], dict[str, PackedArray]]:
     check_target(kind, Path(path))
     try:
-        with Path(path).open("rb") as stream:
-            if not zipfile.is_zipfile(stream):
-                raise _foreign(kind, path)
-            archive = zipfile.ZipFile(stream)
-            header = _header(kind, path, archive)
-            if not arrays:
-                return header, {}
-            _check_version(kind, path, header)
-            names = [name for name in archive.namelist() if name != kind.member]
-            return header, {
-                name.removesuffix(_SUFFIX): _array(archive.read(name)) for name in names
-            }
+        stream = io.BytesIO(Path(path).read_bytes())
+        if not zipfile.is_zipfile(stream):
+            raise _foreign(kind, path)
+        archive = zipfile.ZipFile(stream)
+        members = {member.filename: member for member in archive.infolist()}
+        header = _header(kind, path, archive, members.pop(kind.member, None))
+        if not arrays:
+            return header, {}
+        _check_version(kind, path, header)
+        return header, {
+            name.removesuffix(_SUFFIX): packed_array(archive, member)
+            for name, member in members.items()
+        }
     except OSError as error:
         reason = error.strerror or str(error)
         raise kind.error(f"{path}: cannot read the {kind.noun}: {reason}") from None
-    except _BROKEN as error:
+    except BROKEN as error:
         raise kind.error(f"{path}: damaged {kind.noun}: {error}; {_REMEDY}") from None
 
 
-def _header(kind: FileKind, path: str | Path, archive: zipfile.ZipFile) -> dict[str, Any]:
-    if kind.member not in archive.namelist():
+def _header(
+    kind: FileKind, path: str | Path, archive: zipfile.ZipFile, member: zipfile.ZipInfo | None
+) -> dict[str, Any]:
+    if member is None:
         raise _foreign(kind, path)
-    header = json.loads(archive.read(kind.member))
+    header = json.loads(read_member(archive, member))
     if not isinstance(header, dict) or header.get("kind") != kind.title:
         raise _foreign(kind, path)
     return header
@@ -239,22 +236,10 @@ def _check_version(kind: FileKind, path: str | Path, header: Mapping[str, Any]) 
         got = header.get(name)
         if got != expected:
             raise kind.error(
-                f"{path}: expected a {kind.noun} of {name} {expected}, got {got}; {_REMEDY}"
+                f"{path}: expected a {kind.noun} of {name} {expected}, got {_bare(got)}; {_REMEDY}"
             )
 
 
-def _array(data: bytes) -> NDArray[Any]:
-    """The array of one member.
-
-    Raises:
-        ValueError: it is no array, or not of the numbers that we write.
-    """
-    stream = io.BytesIO(data)
-    if npy.read_magic(stream) != (1, 0):
-        raise ValueError("expected arrays in numpy's format 1.0")
-    shape, fortran, kind = npy.read_array_header_1_0(stream)
-    rest = stream.read()
-    if fortran or kind.str not in _NUMBERS or kind.itemsize * math.prod(shape) != len(rest):
-        raise ValueError(f"expected an array of plain numbers, got {kind} {shape}")
-    # A copy, because kernels would be compiled anew for arrays that are read-only.
-    return np.ndarray(shape, kind, buffer=rest).copy()
+def _bare(value: Any) -> str:
+    """A value for a message, a text without quotes."""
+    return shown(value).strip("'")

@@ -15,6 +15,7 @@ from ellipsoid_planning.errors import ScenarioError
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.scenario_origin import Origin
+from ellipsoid_planning.sizes import MOST_LENGTH
 from ellipsoid_planning.world import World
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         from ellipsoid_planning.scenario_configuration import normalised_configuration
+        from ellipsoid_planning.scenario_scale import check_scale
 
         if self.world.dimension != self.robot.dimension:
             raise self.origin.error(
@@ -61,9 +63,10 @@ class Scenario:
                 f"expected a robot of dimension {self.world.dimension} as the world, "
                 f"got {self.robot.dimension}",
             )
-        if not (np.isfinite(self.clearance) and self.clearance >= 0.0):
-            problem = f"expected a finite clearance of zero or more, got {self.clearance}"
+        if not 0.0 <= self.clearance <= MOST_LENGTH:
+            problem = f"expected a clearance from 0 to {MOST_LENGTH:g}, got {self.clearance}"
             raise self.origin.error(("clearance",), problem)
+        check_scale(self.world, self.robot, self.origin)
         for which in ("start", "goal"):
             given = getattr(self, which)
             configuration = normalised_configuration(self.robot, given, which, self.origin)
@@ -82,6 +85,11 @@ class Scenario:
     def dimension(self) -> int:
         """The dimension n of the world, 2 or 3."""
         return self.world.dimension
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """What was taken for something else than it says, for whoever wrote the scenario."""
+        return tuple(joint.notice for joint in self.robot.joints if joint.notice)
 
     @property
     def file(self) -> str | None:

@@ -9,10 +9,18 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, StrictStr, model_validator
 from pydantic_core import PydanticCustomError
 
+from ellipsoid_planning.sizes import LEAST_LENGTH, MOST_LENGTH
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
-NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
-Vector = Annotated[list[Number], Field(min_length=2, max_length=3)]
+Coordinate = Annotated[
+    float, Field(strict=True, allow_inf_nan=False, ge=-MOST_LENGTH, le=MOST_LENGTH)
+]
+Positive = Annotated[
+    float, Field(strict=True, allow_inf_nan=False, gt=0.0, ge=LEAST_LENGTH, le=MOST_LENGTH)
+]
+NotNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0, le=MOST_LENGTH)]
+Vector = Annotated[list[Coordinate], Field(min_length=2, max_length=3)]
+Direction = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Name = Annotated[StrictStr, Field(min_length=1)]
 Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
 

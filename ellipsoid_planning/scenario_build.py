@@ -26,6 +26,7 @@ from ellipsoid_planning.scenario_joints import joint_values
 from ellipsoid_planning.scenario_origin import Origin, Path
 from ellipsoid_planning.scenario_problems import scenario_error, shown
 from ellipsoid_planning.scenario_robot import robot_of
+from ellipsoid_planning.sizes import LEAST_LENGTH, REMEDY
 from ellipsoid_planning.world import World
 
 SAME_ORIENTATION = 1e-12
@@ -100,6 +101,12 @@ class _Builder:
                     ("bounds", "low", index),
                     f"expected low < high, got low {below:g} and high {above:g}; "
                     "exchange or correct them",
+                )
+            if above - below < LEAST_LENGTH:
+                raise self._entries.error(
+                    ("bounds", "low", index),
+                    f"expected low and high at least {LEAST_LENGTH:g} apart, got low {below:g} and "
+                    f"high {above:g}; {REMEDY}",
                 )
         return low, high
 

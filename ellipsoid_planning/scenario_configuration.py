@@ -15,6 +15,7 @@ from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
 from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario_joints import keyed_joints, limits_text
 from ellipsoid_planning.scenario_origin import Origin
+from ellipsoid_planning.sizes import check_coordinates
 
 # A value beyond a limit by less [rad or the unit of length] is rounding, and put on the limit.
 LIMIT_ROUNDING = 1e-9
@@ -40,6 +41,11 @@ def normalised_configuration(
     if values.shape != (size,) or not np.all(np.isfinite(values)):
         problem = f"expected a configuration of {size} finite numbers, got {values.tolist()}"
         raise origin.error((which,), problem)
+    base = 0 if robot.base_size == 0 else robot.dimension
+    try:
+        check_coordinates(values[:base], "position")
+    except GeometryError as error:
+        raise origin.error((which, "position"), str(error)) from None
     for index in headings(robot):
         values[index] = normalised_heading(float(values[index]))
     _keep_limits(robot, values, which, origin)

@@ -11,7 +11,15 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag
 
-from ellipsoid_planning.scenario_blocks import Block, Body, Name, Number, Orientation, Vector
+from ellipsoid_planning.scenario_blocks import (
+    Block,
+    Body,
+    Direction,
+    Name,
+    Number,
+    Orientation,
+    Vector,
+)
 
 # pydantic notes a union's branch in the place of an error; messages leave these steps out.
 RIGID, ARTICULATED = "<rigid>", "<articulated>"
@@ -65,7 +73,7 @@ class JointBlock(Block):
     parent: StrictStr
     child: StrictStr
     origin: JointOrigin | None = None
-    axis: Vector | None = Field(
+    axis: Direction | None = Field(
         None,
         description="in the joint's frame, of any length but zero, x by default; not for ball "
         "and fixed joints, nor for joints that turn in the plane",

@@ -73,7 +73,7 @@ def joint_values(
         return []
     keyed = keyed_joints(robot)
     for key in given:
-        if key not in keyed:
+        if key not in keyed and not _is_held(robot, key):
             raise entries.error((*path, key), _unknown(key, robot, keyed), at_key=True)
     values: list[float] = []
     for key, joint in keyed.items():
@@ -82,6 +82,12 @@ def joint_values(
         else:
             values += _zero(entries, joint, path)
     return values
+
+
+def _is_held(robot: ArticulatedRobot, key: str) -> bool:
+    """Whether a key is that of a joint whose limits leave one value, which it keeps to."""
+    named = {joint.name: joint for joint in robot.joints if joint.type == FIXED and joint.notice}
+    return key in named or key.removesuffix(SUFFIX) in named
 
 
 def _unknown(key: str, robot: ArticulatedRobot, keyed: Mapping[str, Joint]) -> str:

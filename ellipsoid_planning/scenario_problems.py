@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning.errors import ScenarioError
+from ellipsoid_planning.numbers_shown import shown as short
 from ellipsoid_planning.orientation_forms import PLANAR_FORMS, SPATIAL_FORMS
 from ellipsoid_planning.scenario_format_robot import TAGS
 from ellipsoid_planning.scenario_origin import Origin, Path
+from ellipsoid_planning.sizes import LEAST_LENGTH, MOST_LENGTH, REMEDY
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -23,7 +25,6 @@ JOINT_VALUE = (
     "a number, or an orientation for a ball joint",
     "write NAME_deg: 30 (angle), NAME: 0.2 (shift) or NAME: {quaternion: [x, y, z, w]} (ball)",
 )
-LONGEST_VALUE = 60
 
 # What was expected, and the remedy, by pydantic's error type.
 EXPECTATIONS: Mapping[str, tuple[str, str]] = {
@@ -87,6 +88,8 @@ def _problem(kind: str, path: Path, context: Mapping[str, Any], value: Any, mess
     if kind in ("too_short", "too_long"):
         return _length_problem(path, context, len(value))
     expectation = EXPECTATIONS.get(kind)
+    if kind in ("less_than_equal", "greater_than_equal"):
+        expectation = _range_expectation(path, value)
     if kind == "float_type" and path[-2:-1] == ("joints",):
         expectation = JOINT_VALUE
     if kind == "literal_error" and path:
@@ -95,6 +98,19 @@ def _problem(kind: str, path: Path, context: Mapping[str, Any], value: Any, mess
         return f"{message}, got {shown(value)}"
     expected, remedy = expectation
     return f"expected {expected}, got {shown(value)}; {remedy}"
+
+
+def _range_expectation(path: Path, value: float) -> tuple[str, str]:
+    """What was expected instead of a number that is beyond the sizes of scenes."""
+    if "semi_axes" in path:
+        if value <= 0.0:
+            return EXPECTATIONS["greater_than"]
+        return f"a length from {LEAST_LENGTH:g} to {MOST_LENGTH:g}", REMEDY
+    if path[-1:] == ("clearance",):
+        if value < 0.0:
+            return EXPECTATIONS["greater_than_equal"]
+        return f"a length of at most {MOST_LENGTH:g}", REMEDY
+    return f"a coordinate from {-MOST_LENGTH:g} to {MOST_LENGTH:g}", REMEDY
 
 
 def _forms_problem(forms: list[str]) -> str:
@@ -117,7 +133,6 @@ def _length_problem(path: Path, context: Mapping[str, Any], length: int) -> str:
 def shown(value: Any) -> str:
     """Return a value as a message shows it: short, and with YAML's words."""
     words = {True: "true", False: "false", None: "nothing"}
-    text = words[value] if value is None or isinstance(value, bool) else repr(value)
     if isinstance(value, Mapping):
-        text = "a mapping"
-    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 1] + "…"
+        return "a mapping"
+    return words[value] if value is None or isinstance(value, bool) else short(value)

@@ -16,6 +16,7 @@ from ellipsoid_planning.robots.articulated import (
     Link,
 )
 from ellipsoid_planning.robots.joint import BALL, LIMITED, PRISMATIC, REVOLUTE, Joint
+from ellipsoid_planning.robots.joint_limits import is_unlimited, revolute_problem, shift_problem
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.robots.tree import check_ignored_pair
 from ellipsoid_planning.scenario_entries import Entries
@@ -160,7 +161,14 @@ def _limits(entries: Entries, block: JointBlock, path: Path) -> tuple[float, flo
             f"joint {block.name!r}: expected {keys[0]} < {keys[1]}, got {lower:g} and {upper:g}; "
             "exchange or correct them",
         )
-    return (math.radians(lower), math.radians(upper)) if block.type == REVOLUTE else (lower, upper)
+    if block.type == REVOLUTE:
+        lower, upper = math.radians(lower), math.radians(upper)
+        problem = None if is_unlimited(lower, upper) else revolute_problem(lower, upper)
+    else:
+        problem = shift_problem(lower, upper)
+    if problem is not None:
+        raise entries.error((*place, keys[0]), f"joint {block.name!r}: {problem}")
+    return lower, upper
 
 
 def _limit_values(

@@ -9,10 +9,13 @@ other, or the margins for rounding swallow every gap.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 
 LEAST_LENGTH = 1e-12
 MOST_LENGTH = 1e12
@@ -22,8 +25,28 @@ MOST_SHIFT = 1e3
 """Of the largest value of a prismatic joint to the size of the scene."""
 MOST_SECONDS = 1e9
 """Of a time limit: OMPL counts nanoseconds, of which 64 bits hold 292 years."""
+MOST_SEED = (1 << 64) - 1
+"""Of a generator of random numbers."""
 
 REMEDY = "choose a unit of length that suits the scene"
+
+
+def check_bodies(bodies: Sequence[Ellipsoid], kind: str) -> None:
+    """Check that bodies of one dimension are of the sizes that scenes may have.
+
+    Raises:
+        GeometryError: naming the first that is not.
+    """
+    if not bodies:
+        return
+    axes = np.array([body.semi_axes for body in bodies])
+    centres = np.array([body.centre for body in bodies])
+    fits = (axes >= LEAST_LENGTH) & (axes <= MOST_LENGTH) & (np.abs(centres) <= MOST_LENGTH)
+    wrong = np.flatnonzero(~fits.all(axis=1))
+    if len(wrong):
+        body = bodies[int(wrong[0])]
+        check_semi_axes(body.semi_axes, f"{kind} {body.name!r}")
+        check_coordinates(body.centre, f"{kind} {body.name!r}")
 
 
 def check_semi_axes(values: ArrayLike, whose: str) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.naming import numbered
+from ellipsoid_planning.sizes import LEAST_LENGTH, REMEDY, check_bodies, check_coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,8 @@ class World:
     Unnamed bodies are numbered. Everything is in the world frame.
 
     Raises:
-        GeometryError: if the box is empty or the dimensions differ.
+        GeometryError: if the box is empty, the dimensions differ, or sizes are out of the range
+            that scenes may have, see `ellipsoid_planning.sizes`.
     """
 
     low: NDArray[np.float64]
@@ -42,6 +44,12 @@ class World:
             raise GeometryError(
                 f"expected finite bounds with low < high, got {low.tolist()} and {high.tolist()}"
             )
+        check_coordinates((low, high), "bounds")
+        if not np.all(high - low >= LEAST_LENGTH):
+            raise GeometryError(
+                f"expected bounds that are at least {LEAST_LENGTH:g} apart, got {low.tolist()} and "
+                f"{high.tolist()}; {REMEDY}"
+            )
         for field, value in (("low", low), ("high", high)):
             value.setflags(write=False)
             object.__setattr__(self, field, value)
@@ -53,6 +61,8 @@ class World:
                     f"expected bodies of dimension {self.dimension} as the bounds, "
                     f"but {body.name!r} has dimension {body.dimension}"
                 )
+        check_bodies(self.obstacles, "obstacle")
+        check_bodies(self.arenas, "arena")
 
     @property
     def dimension(self) -> int:

@@ -16,6 +16,7 @@ from ompl import geometric as og
 from ellipsoid_planning.errors import PlannerError, RoadmapError
 from ellipsoid_planning.roadmap.store_format import check_target
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.sizes import MOST_SECONDS
 
 from . import bindings
 from .certify import is_certified
@@ -87,8 +88,11 @@ def checked_request(
         raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
     if entry.needs_plugin and checker not in PLUGIN_CHECKERS:
         raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
-    if not time_limit > 0.0:
-        raise PlannerError(f"time limit: expected a positive number of seconds, got {time_limit!r}")
+    if not 0.0 < time_limit <= MOST_SECONDS:
+        raise PlannerError(
+            f"time limit: expected a positive number of seconds, at most {MOST_SECONDS:g}, "
+            f"got {time_limit!r}"
+        )
     if roadmap is not None:
         check_roadmap_file(entry, Path(roadmap))
     values = {**(own if entry.name == own_name else {}), **(parameters or {})}

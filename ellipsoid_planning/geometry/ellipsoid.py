@@ -14,6 +14,8 @@ from ellipsoid_planning.geometry.directions import unit_directions
 from ellipsoid_planning.geometry.orientation import check_rotation, rotation_from_yaw
 
 SYMMETRY_TOLERANCE = 1e-9
+# Worlds and robots take a narrower range, see `ellipsoid_planning.sizes`.
+LEAST_SIZE, MOST_SIZE = 1e-150, 1e150
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,6 +191,11 @@ def _checked_semi_axes(semi_axes: ArrayLike) -> NDArray[np.float64]:
         raise GeometryError(f"expected 2 or 3 semi-axes, got an array of shape {axes.shape}")
     if not (np.all(np.isfinite(axes)) and np.all(axes > 0.0)):
         raise GeometryError(f"expected finite positive semi-axes, got {axes.tolist()}")
+    if not (np.all(axes >= LEAST_SIZE) and np.all(axes <= MOST_SIZE)):
+        raise GeometryError(
+            f"expected semi-axes from {LEAST_SIZE:g} to {MOST_SIZE:g}, whose squares double "
+            f"precision can hold, got {axes.tolist()}; choose another unit of length"
+        )
     return axes
 
 
@@ -197,5 +204,10 @@ def _checked_vector(vector: ArrayLike, dimension: int, what: str) -> NDArray[np.
     if array.shape != (dimension,) or not np.all(np.isfinite(array)):
         raise GeometryError(
             f"expected a {what} of {dimension} finite numbers, got {array.tolist()}"
+        )
+    if not np.all(np.abs(array) <= MOST_SIZE):
+        raise GeometryError(
+            f"expected a {what} of numbers of at most {MOST_SIZE:g}, whose squares double "
+            f"precision can hold, got {array.tolist()}; choose another unit of length"
         )
     return array

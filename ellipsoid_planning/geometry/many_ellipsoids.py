@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.geometry.ellipsoid import LEAST_SIZE, MOST_SIZE, Ellipsoid
 from ellipsoid_planning.geometry.orientation import ORTHONORMALITY_TOLERANCE
 
 Array = NDArray[np.float64]
@@ -43,8 +43,11 @@ def many_ellipsoids(
 
 
 def _check(centres: Array, rotations: Array, semi_axes: Array) -> None:
-    if not (np.isfinite(centres).all() and np.isfinite(semi_axes).all() and (semi_axes > 0).all()):
-        raise GeometryError("expected finite centres and finite positive semi-axes")
+    sizes = (semi_axes >= LEAST_SIZE) & (semi_axes <= MOST_SIZE)
+    if not (sizes.all() and (np.abs(centres) <= MOST_SIZE).all()):
+        raise GeometryError(
+            f"expected semi-axes from {LEAST_SIZE:g} to {MOST_SIZE:g} and centres within the latter"
+        )
     products = np.swapaxes(rotations, 1, 2) @ rotations
     off = np.abs(products - np.eye(semi_axes.shape[1]))
     if not ((off <= ORTHONORMALITY_TOLERANCE).all() and (np.linalg.det(rotations) > 0.0).all()):

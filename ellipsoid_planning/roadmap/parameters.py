@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.numbers_shown import shown
 from ellipsoid_planning.roadmap.layer_grids import MOST_LAYERS, check_orientations
+from ellipsoid_planning.sizes import MOST_LENGTH, MOST_SEED
 
+MOST_REFINEMENTS = 100
+MOST_INFLATION = 1e9
 # Name, least and most of the integers that may be left to the planner.
 _CHOICES = (
     ("layers", 1, MOST_LAYERS),
@@ -33,8 +36,9 @@ class RoadmapParameters:
             one first.
         neighbours: layers that each layer is joined to, at most 1000; 12 in space, 4 in the
             plane, 20 for robots with joints.
-        inflation: weight of the heuristic in the first search, at least 1; larger is greedier.
-        refine: how many times an exhausted roadmap is replaced by a finer one; 0 for never.
+        inflation: weight of the heuristic in the first search, from 1 to 1e9; larger is greedier.
+        refine: how many times an exhausted roadmap is replaced by a finer one; 0 for never, at
+            most 100.
         anytime: improve the path until the time is over.
         seed: of the orientations of finer levels and of the improvement of paths.
         orientations: {grid: NAME, count: N} or {grid: NAME, resolution_deg: D}: the grid of
@@ -42,7 +46,7 @@ class RoadmapParameters:
             ``layers``; with its own neighbours. Finer levels have finer ones. See
             roadmap.layer_grids; not for robots with joints.
         metric_weight: length that a turn of one radian counts for in the search, in the
-            scenario's unit; half the robot's reach by default.
+            scenario's unit, at most 1e12; half the robot's reach by default.
 
     Raises:
         PlannerError: if a value is out of its range.
@@ -63,23 +67,25 @@ class RoadmapParameters:
         for name, least, most in _CHOICES:
             if getattr(self, name) is not None:
                 self._check(name, Integral, least, most)
-        self._check("refine", Integral, 0)
-        self._check("seed", Integral, 0)
-        self._check("inflation", Real, 1)
+        self._check("refine", Integral, 0, MOST_REFINEMENTS)
+        self._check("seed", Integral, 0, MOST_SEED)
+        self._check("inflation", Real, 1, MOST_INFLATION)
         if self.metric_weight is not None:
-            self._check("metric_weight", Real, 0)
+            self._check("metric_weight", Real, 0, MOST_LENGTH)
         if self.orientations is not None:
             check_orientations(self.orientations)
         if not isinstance(self.anytime, bool):
             raise PlannerError(f"anytime: expected true or false, got {self.anytime!r}")
 
-    def _check(self, name: str, kind: type, least: int, most: float = sys.float_info.max) -> None:
+    def _check(self, name: str, kind: type, least: int, most: float) -> None:
         value = getattr(self, name)
         fits = isinstance(value, kind) and not isinstance(value, bool)
         if not fits or not least <= value <= most:
             noun = "an integer" if kind is Integral else "a number"
-            reach = f"from {least} to {most}" if isinstance(most, int) else f"of at least {least}"
-            raise PlannerError(f"{name}: expected {noun} {reach}, got {value!r}")
+            reach = (
+                f"from {least} to {most}" if isinstance(most, int) else f"from {least} to {most:g}"
+            )
+            raise PlannerError(f"{name}: expected {noun} {reach}, got {shown(value)}")
 
     def layer_count(self, dimension: int, articulated: bool = False) -> int:
         """Layers of the first level in a world of ``dimension``."""

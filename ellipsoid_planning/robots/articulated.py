@@ -20,6 +20,7 @@ from ellipsoid_planning.geometry.orientation import (
 from ellipsoid_planning.robots.joint import BALL, FIXED, PRISMATIC, Joint
 from ellipsoid_planning.robots.reach import joint_weights, robot_reach
 from ellipsoid_planning.robots.tree import check_tree, joints_in_order
+from ellipsoid_planning.sizes import check_bodies, check_coordinates
 
 Array = NDArray[np.float64]
 
@@ -89,6 +90,7 @@ class ArticulatedRobot:
             raise GeometryError(
                 f"expected links and joints of one dimension, got {sorted(dimensions)}"
             )
+        check_bodies(self.parts, "part")
         if self.base not in BASES:
             raise GeometryError(f"expected a base of {', '.join(BASES)}, got {self.base!r}")
         self._fix_base()
@@ -99,8 +101,10 @@ class ArticulatedRobot:
         if self.base != FIXED_BASE and self.position is not None:
             raise GeometryError("only a fixed base has a position of its own")
         if self.base == FIXED_BASE and not self.moving_joints:
+            held = [joint.notice for joint in self.joints if joint.notice]
+            got = f"got none ({'; '.join(held)})" if held else "got none"
             raise RobotError(
-                "a robot on a fixed base needs a joint that moves, got none; add one, or let "
+                f"a robot on a fixed base needs a joint that moves, {got}; add one, or let "
                 "the base move",
                 ("base",),
             )
@@ -111,6 +115,7 @@ class ArticulatedRobot:
             at = np.zeros(self.dimension) if self.position is None else np.array(self.position)
             if at.shape != (self.dimension,) or not np.all(np.isfinite(at)):
                 raise GeometryError(f"expected a position of {self.dimension} numbers, got {at}")
+            check_coordinates(at, "position")
             self._keep("position", at.astype(float))
 
     def _keep(self, name: str, value: Array) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.orientation import check_rotation, rotation_from_yaw
 from ellipsoid_planning.robots import joint_limits
-from ellipsoid_planning.sizes import MOST_LENGTH, check_coordinates
+from ellipsoid_planning.sizes import check_coordinates
 
 REVOLUTE = "revolute"
 CONTINUOUS = "continuous"
@@ -123,15 +123,12 @@ class Joint:
             raise self._error(f"expected lower < upper, got {self.lower:g} and {self.upper:g}")
         if self.type == REVOLUTE and joint_limits.is_unlimited(self.lower, self.upper):
             self._become(CONTINUOUS, joint_limits.unlimited_notice(self.lower, self.upper))
-        elif self.type == REVOLUTE:
-            problem = joint_limits.revolute_problem(self.lower, self.upper)
+        elif self.type in LIMITED:
+            revolute = self.type == REVOLUTE
+            find = joint_limits.revolute_problem if revolute else joint_limits.shift_problem
+            problem = find(self.lower, self.upper)
             if problem is not None:
                 raise self._error(problem)
-        elif self.type == PRISMATIC and not max(-self.lower, self.upper) <= MOST_LENGTH:
-            raise self._error(
-                f"expected the limits of a prismatic joint within {MOST_LENGTH:g}, got "
-                f"{self.lower:g} and {self.upper:g}; give the lengths that it can move by"
-            )
         if self.type in LIMITED and self.upper - self.lower <= joint_limits.NEGLIGIBLE:
             self._fix(self.lower)
         if self.type == CONTINUOUS:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+from ellipsoid_planning.sizes import MOST_LENGTH
+
 UNLIMITED = 1000.0 * 2.0 * math.pi
 """Limits of a revolute joint that are both this far from 0 [rad], a thousand turns, mean none."""
 NEGLIGIBLE = 1e-12
@@ -29,6 +31,16 @@ def revolute_problem(lower: float, upper: float) -> str | None:
         f"expected both limits within a thousand turns ({_DEGREES}), or both beyond, which means "
         f"none, got {math.degrees(lower):g} and {math.degrees(upper):g} deg; "
         "correct them or make the joint continuous"
+    )
+
+
+def shift_problem(lower: float, upper: float) -> str | None:
+    """What is wrong with limits of a prismatic joint [length]; None if fine."""
+    if max(abs(lower), abs(upper)) <= MOST_LENGTH:
+        return None
+    return (
+        f"expected the limits of a prismatic joint within {MOST_LENGTH:g}, got {lower:g} and "
+        f"{upper:g}; give the lengths that it can move by"
     )
 
 

@@ -18,6 +18,7 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_yaw,
 )
 from ellipsoid_planning.robots.joint import Joint
+from ellipsoid_planning.sizes import check_bodies
 
 BASE_LINK = "base"
 
@@ -36,7 +37,8 @@ class RigidRobot:
             the identity by default. A rotating robot has none.
 
     Raises:
-        GeometryError: if there is no part, or the dimensions differ.
+        GeometryError: if there is no part, the dimensions differ, or sizes are out of the range
+            that scenes may have, see `ellipsoid_planning.sizes`.
     """
 
     parts: tuple[Ellipsoid, ...]
@@ -50,6 +52,7 @@ class RigidRobot:
         dimensions = {part.dimension for part in self.parts}
         if len(dimensions) > 1:
             raise GeometryError(f"expected parts of one dimension, got {sorted(dimensions)}")
+        check_bodies(self.parts, "part")
         if self.rotates and self.orientation is not None:
             raise GeometryError("a rotating robot has no fixed orientation; set rotates to False")
         if not self.rotates:

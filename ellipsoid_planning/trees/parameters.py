@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from numbers import Integral, Real
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.numbers_shown import shown
+from ellipsoid_planning.sizes import LEAST_LENGTH, MOST_LENGTH, MOST_SEED
 
 MOST_HALVINGS = 50
 
@@ -43,25 +44,20 @@ class TreeParameters:
 
     def __post_init__(self) -> None:
         if self.range is not None:
-            self._check("range", Real, sys.float_info.min, wanted="a positive number")
+            wanted = f"a number from {LEAST_LENGTH:g} to {MOST_LENGTH:g}"
+            self._check("range", Real, LEAST_LENGTH, MOST_LENGTH, wanted)
         self._check("halvings", Integral, 0, MOST_HALVINGS, f"an integer from 0 to {MOST_HALVINGS}")
         for name in ("uniform", "gate_share"):
             self._check(name, Real, 0, 1, "a number from 0 to 1")
-        self._check("seed", Integral, 0, wanted="an integer of at least 0")
+        self._check("seed", Integral, 0, MOST_SEED, f"an integer from 0 to {MOST_SEED}")
         if self.metric_weight is not None:
-            self._check("metric_weight", Real, 0, wanted="a number of at least 0")
+            wanted = f"a number from 0 to {MOST_LENGTH:g}"
+            self._check("metric_weight", Real, 0, MOST_LENGTH, wanted)
         if not isinstance(self.anytime, bool):
             raise PlannerError(f"anytime: expected true or false, got {self.anytime!r}")
 
-    def _check(
-        self,
-        name: str,
-        kind: type,
-        least: float,
-        most: float = sys.float_info.max,
-        wanted: str = "",
-    ) -> None:
+    def _check(self, name: str, kind: type, least: float, most: float, wanted: str) -> None:
         value = getattr(self, name)
         fits = isinstance(value, kind) and not isinstance(value, bool)
         if not fits or not least <= value <= most:
-            raise PlannerError(f"{name}: expected {wanted}, got {value!r}")
+            raise PlannerError(f"{name}: expected {wanted}, got {shown(value)}")

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.scenario import Scenario
+from ellipsoid_planning.sizes import MOST_SECONDS
 from planners.benchmark.contenders import Contender
 from planners.registry import checked_parameters, find_planner
 
 LARGEST_SEED = 2**32
+MOST_RUNS = 1_000_000
+MOST_JOBS = 10_000
+MOST_MEGABYTES = 1e9
 
 
 def check_numbers(
@@ -21,15 +24,19 @@ def check_numbers(
     Raises:
         PlannerError: one is out of its range.
     """
-    for option, count in (("--runs", runs), ("--jobs", jobs)):
-        if count < 1:
-            raise PlannerError(f"{option}: expected a whole number of at least 1, got {count}")
-    for option, value, unit in (
-        ("--time-limit", time_limit, "seconds"),
-        ("--memory-limit", memory_limit, "MB"),
+    for option, count, highest in (("--runs", runs, MOST_RUNS), ("--jobs", jobs, MOST_JOBS)):
+        if not 1 <= count <= highest:
+            raise PlannerError(
+                f"{option}: expected a whole number of at least 1, at most {highest}, got {count}"
+            )
+    for option, value, unit, most in (
+        ("--time-limit", time_limit, "seconds", MOST_SECONDS),
+        ("--memory-limit", memory_limit, "MB", MOST_MEGABYTES),
     ):
-        if not 0.0 < value < math.inf:
-            raise PlannerError(f"{option}: expected a positive number of {unit}, got {value:g}")
+        if not 0.0 < value <= most:
+            raise PlannerError(
+                f"{option}: expected a positive number of {unit}, at most {most:g}, got {value:g}"
+            )
     if not 0 <= seed <= LARGEST_SEED - runs:
         raise PlannerError(
             f"--seed: expected an integer from 0 to {LARGEST_SEED - runs}, one for each run "

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from planners.cli.interrupt import INTERRUPTED, note_interrupts
+from planners.cli.sources import say_notices
 from planners.cli.terminal import say, working, working_with_kernels
 
 if TYPE_CHECKING:
@@ -165,6 +166,8 @@ def _named_problems(names: list[str], contenders: tuple[Contender, ...]) -> tupl
     from planners.benchmark.problems import scenario_problems
 
     loaded: list[Scenario] = [load_scenario(name) for name in names]
+    for scenario in loaded:
+        say_notices(scenario)
     if loaded:
         with working_with_kernels("Checking starts and goals"):
             for scenario in loaded:

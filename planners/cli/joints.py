@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from planners.cli.sources import say_notices
 from planners.cli.terminal import result_console, working_with_kernels
 
 
@@ -37,6 +38,7 @@ def joints(
     from ellipsoid_planning.scenario import load_scenario
 
     scenario = load_scenario(source)
+    say_notices(scenario)
     if not isinstance(scenario.robot, ArticulatedRobot):
         raise ScenarioError(
             f"{scenario.name}: the robot is rigid, it has no joints; expected a scenario with "

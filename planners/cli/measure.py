@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
 import typer
 
 from planners.cli.outputs import print_json
+from planners.cli.sources import say_notices
 from planners.cli.terminal import result_console, stages, working_with_kernels
+
+MOST_LINES = 1_000_000_000
 
 
 def measure(
@@ -54,6 +56,7 @@ def measure(
     from ellipsoid_planning.scenario import load_scenario
 
     problem = load_scenario(scenario)
+    say_notices(problem)
     budget = Budget(lines, half_width, time_limit)
     with working_with_kernels(f"Loading {problem.name}"):
         problem.cspace()
@@ -72,11 +75,16 @@ def _check(
     seed: int, lines: int | None, time_limit: float | None, half_width: float | None
 ) -> None:
     from ellipsoid_planning.errors import PlannerError
+    from ellipsoid_planning.sizes import MOST_SECONDS
 
     if not 0 <= seed < 2**32:
         raise PlannerError(f"--seed: expected an integer in [0, 2**32), got {seed}")
-    if lines is not None and lines < 1:
-        raise PlannerError(f"--lines: expected a positive number of lines, got {lines}")
+    if lines is not None and not 1 <= lines <= MOST_LINES:
+        raise PlannerError(
+            f"--lines: expected a positive number of lines, at most {MOST_LINES}, got {lines}"
+        )
     for option, value in (("--time-limit", time_limit), ("--half-width", half_width)):
-        if value is not None and not 0.0 < value < math.inf:
-            raise PlannerError(f"{option}: expected a positive number, got {value}")
+        if value is not None and not 0.0 < value <= MOST_SECONDS:
+            raise PlannerError(
+                f"{option}: expected a positive number, at most {MOST_SECONDS:g}, got {value}"
+            )

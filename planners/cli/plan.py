@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from enum import Enum
 from pathlib import Path
@@ -14,6 +13,7 @@ from planners.cli.command_group import NO_PATH, SOLVED
 from planners.cli.outputs import check_outputs, write_csv
 from planners.cli.safety_tables import make_tables
 from planners.cli.settings import planner_parameters
+from planners.cli.sources import say_notices
 from planners.cli.terminal import result_console, say, working, working_with_kernels
 
 if TYPE_CHECKING:
@@ -142,6 +142,7 @@ def _checked_scenario(
     from ellipsoid_planning.scenario_checks import check_endpoints
 
     scenario = load_scenario(name)
+    say_notices(scenario)
     _check_planner(scenario, planner, checker, parameters, roadmap)
     with working_with_kernels(f"Checking start and goal of {scenario.name}"):
         check_endpoints(scenario)
@@ -197,9 +198,13 @@ def _check_own(scenario: Scenario, entry: PlannerEntry, name: str, value: object
 
 def _check_limits(time_limit: float, seed: int | None) -> None:
     from ellipsoid_planning.errors import PlannerError
+    from ellipsoid_planning.sizes import MOST_SECONDS
 
-    if not 0.0 < time_limit < math.inf:
-        raise PlannerError(f"--time-limit: expected a positive number of seconds, got {time_limit}")
+    if not 0.0 < time_limit <= MOST_SECONDS:
+        raise PlannerError(
+            f"--time-limit: expected a positive number of seconds, at most {MOST_SECONDS:g}, "
+            f"got {time_limit:g}"
+        )
     if seed is not None and not 0 <= seed < 2**32:
         raise PlannerError(f"--seed: expected an integer in [0, 2**32), got {seed}")
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planners.cli.terminal import say
+
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
     from ellipsoid_planning.scenario import Scenario
@@ -25,4 +27,12 @@ def load_source(name: str) -> tuple[Scenario, PlanResult | None]:
     if Path(name).suffix.lower() == RESULT_SUFFIX:
         result = load_result(name)
         return result.scenario, result
-    return load_scenario(name), None
+    scenario = load_scenario(name)
+    say_notices(scenario)
+    return scenario, None
+
+
+def say_notices(scenario: Scenario) -> None:
+    """Tell the user what of a scenario was taken for something else than it says."""
+    for notice in scenario.notices:
+        say(f"Note: {scenario.name}: {notice}")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning import __version__, atomic
+from ellipsoid_planning.array_members import plain_array
 from ellipsoid_planning.crystal.packing.fingerprint import differences, normal_form
 from ellipsoid_planning.crystal.packing.model import PackingModel
 from ellipsoid_planning.errors import CrystalError
@@ -120,6 +121,9 @@ def array_bytes(array: NDArray[Any]) -> bytes:
 
 
 def bytes_array(content: bytes) -> NDArray[Any]:
-    """The array of `array_bytes`."""
-    found: NDArray[Any] = np.load(io.BytesIO(content), allow_pickle=False)
-    return found
+    """The array of `array_bytes`.
+
+    Raises:
+        ValueError: they are no plain array.
+    """
+    return plain_array(content)

@@ -101,9 +101,7 @@ def plain_array(content: bytes) -> NDArray[Any]:
     return np.ndarray(shape, kind, buffer=content, offset=begin).copy()
 
 
-def _read_header(
-    stream: IO[bytes], total: int
-) -> tuple[np.dtype[Any], tuple[int, ...], int]:
+def _read_header(stream: IO[bytes], total: int) -> tuple[np.dtype[Any], tuple[int, ...], int]:
     """Type, shape and length of the header of an array that has ``total`` bytes with it."""
     begin = stream.read(len(_MAGIC) + 2)
     if begin[:-2] != _MAGIC:

@@ -83,6 +83,9 @@ def _warn(imported: ImportedRobot) -> None:
     for joint in imported.joints:
         if joint.changed:
             say(f"Joint {joint.name!r} ({joint.type}) {joint.fate}.")
+    dropped = sorted({name for joint in imported.joints for name in joint.dropped})
+    if dropped:
+        say(f"Plans do not heed what the URDF says of joints' {', '.join(dropped)}: left out.")
     for first, second in imported.ignored:
         say(f"Links {first!r} and {second!r} always touch: their self-collision is ignored.")
     for first, second in imported.touching:

@@ -50,12 +50,14 @@ def converted_joints(
             "replace them in the URDF; a base that moves freely is had with --base free"
         )
     try:
-        return [_converted(joint, mimic) for joint in joints]
+        return [
+            _converted(joint, mimic, description.dropped.get(joint.name, ())) for joint in joints
+        ]
     except GeometryError as error:
         raise UrdfError(f"{description.file}: {error}") from None
 
 
-def _converted(source: Any, mimic: str) -> ConvertedJoint:
+def _converted(source: Any, mimic: str, dropped: tuple[str, ...]) -> ConvertedJoint:
     pose = np.eye(4) if source.origin is None else source.origin
     lower, upper = _limits(source)
     coupled = source.mimic is not None and source.type != FIXED
@@ -71,7 +73,11 @@ def _converted(source: Any, mimic: str) -> ConvertedJoint:
     joint = Joint.of(*ends, source.type, pose[:3, 3], pose[:3, :3], axis, *limits)
     if held is not None:
         joint = _held(joint, held)
-    report = JointReport(source.name, source.type, _fate(source, held, coupled=coupled))
+    fate = _fate(source, held, coupled=coupled)
+    if joint.notice:  # limits that mean none, or leave one value
+        said = joint.notice.partition(": ")[2]
+        fate = said if fate == CARRIED_OVER else f"{fate}; {said}"
+    report = JointReport(source.name, source.type, fate, dropped)
     return ConvertedJoint(joint, report)
 
 
@@ -84,9 +90,9 @@ def _limits(source: Any) -> tuple[float, float]:
             f"joint {source.name!r}: a {source.type} joint needs <limit lower upper>"
         )
     lower, upper = source.limit.lower or 0.0, source.limit.upper or 0.0
-    if not (math.isfinite(lower) and math.isfinite(upper) and lower <= upper):
+    if not lower <= upper or (lower == upper and math.isinf(lower)):
         raise GeometryError(
-            f"joint {source.name!r}: expected finite limits, lower <= upper, "
+            f"joint {source.name!r}: expected limits with lower <= upper, "
             f"got {lower:g} and {upper:g}"
         )
     return lower, upper

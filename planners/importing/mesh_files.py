@@ -13,6 +13,7 @@ import numpy as np
 from ellipsoid_planning.errors import GeometryError, UrdfError
 from ellipsoid_planning.geometry import solids
 from ellipsoid_planning.geometry.solids import Solid
+from ellipsoid_planning.sizes import MOST_LENGTH, check_coordinates
 from planners.importing.libraries import library
 
 # A package's URDF is rarely deeper in it than this.
@@ -43,10 +44,14 @@ class MeshFiles:
             self._loaded[path] = _read(link, path)
         loaded = self._loaded[path]
         factors = np.ones(3) if scale is None else np.asarray(scale, dtype=float) * np.ones(3)
+        vertices = np.asarray(loaded.vertices, dtype=float)
+        if np.abs(vertices).max() <= MOST_LENGTH:  # products of others may overflow
+            vertices = vertices * factors
         try:
-            return solids.mesh(np.asarray(loaded.vertices) * factors, loaded.faces)
+            check_coordinates(vertices, "vertices")
+            return solids.mesh(vertices, loaded.faces)
         except GeometryError as error:
-            raise UrdfError(f"link {link!r}: mesh {path}: {error}") from None
+            raise UrdfError(f"{self.urdf}: link {link!r}: mesh {path}: {error}") from None
 
     def _find(self, link: str, filename: str) -> Path:
         looked = dict.fromkeys(self._candidates(filename))

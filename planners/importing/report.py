@@ -45,11 +45,13 @@ class JointReport:
         name: the joint's.
         type: its type in the URDF.
         fate: "carried over", or what was changed and why.
+        dropped: what else is said of it, which plans do not heed: "velocity", "effort" and such.
     """
 
     name: str
     type: str
     fate: str
+    dropped: tuple[str, ...] = ()
 
     @property
     def changed(self) -> bool:
@@ -93,7 +95,7 @@ class ImportedRobot:
             "base": self.robot.base,
             "volume_excess": self.excess,
             "links": [{**asdict(link), "volume_excess": link.excess} for link in self.links],
-            "joints": [asdict(joint) for joint in self.joints],
+            "joints": [{**asdict(joint), "dropped": list(joint.dropped)} for joint in self.joints],
             "ignored_self_collision": [list(pair) for pair in self.ignored],
             "touching_at_zero": [list(pair) for pair in self.touching],
         }

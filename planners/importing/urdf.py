@@ -16,8 +16,10 @@ from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.geometry.solids import Solid
 from ellipsoid_planning.robots.articulated import BASES, FIXED_BASE, FREE_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.articulated import Link as RobotLink
+from ellipsoid_planning.robots.joint import FIXED
+from ellipsoid_planning.scenario_joints import keyed_joints
 from planners.importing.contacts import contacts
-from planners.importing.joints import INDEPENDENT, MIMICS, converted_joints
+from planners.importing.joints import INDEPENDENT, MIMICS, ConvertedJoint, converted_joints
 from planners.importing.libraries import library
 from planners.importing.link_solids import link_solids
 from planners.importing.mesh_files import MeshFiles
@@ -69,8 +71,9 @@ def import_urdf(
         robot = ArticulatedRobot(
             tuple(link for link, _ in built), tuple(entry.joint for entry in converted), base
         )
+        keyed_joints(robot)
     except GeometryError as error:
-        raise UrdfError(f"{description.file}: {error}") from None
+        raise UrdfError(f"{description.file}: {error}{_held(converted)}") from None
     always, touching = contacts(robot)
     robot = replace(robot, ignored=frozenset(frozenset(pair) for pair in always))
     return ImportedRobot(
@@ -81,6 +84,16 @@ def import_urdf(
         tuple(always),
         tuple(touching),
     )
+
+
+def _held(converted: Sequence[ConvertedJoint]) -> str:
+    """Which joints were fixed, for a robot that has none that moves."""
+    if any(entry.joint.type != FIXED for entry in converted):
+        return ""
+    fixed = [
+        entry.report for entry in converted if entry.report.type != FIXED and not entry.joint.notice
+    ]
+    return "".join(f"; joint {joint.name!r}: {joint.fate}" for joint in fixed)
 
 
 def _check_options(parts: int, base: str, mimic: str) -> None:

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ellipsoid_planning.errors import UrdfError
 from planners.importing.libraries import library
+from planners.importing.urdf_numbers import check_numbers
 
 SHAPES = ("box", "capsule", "cylinder", "mesh", "sphere")
+# What a joint's plans do not heed.
+LIMITS_DROPPED = ("velocity", "effort")
+PARTS_DROPPED = ("dynamics", "safety_controller")
+# What expands to other text, perhaps without end, or reads other files.
+ENTITY = b"<!ENTITY"
 JOINT_PARTS = ("origin", "axis", "limit", "mimic")
 
 
@@ -22,11 +29,13 @@ class Description:
         file: the URDF.
         robot: yourdfpy's ``Robot`` with its links, their collision geometry, and its joints.
         capsules: which (link, index of the collision) are capsules; the robot says cylinders.
+        dropped: of each joint, what is said of it that plans of geometry have no use for.
     """
 
     file: Path
     robot: Any
     capsules: frozenset[tuple[str, int]]
+    dropped: Mapping[str, tuple[str, ...]]
 
 
 def read_description(file: Path) -> Description:
@@ -50,9 +59,17 @@ def read_description(file: Path) -> Description:
     capsules: set[tuple[str, int]] = set()
     for link in root.findall("link"):
         reduced.append(_reduced_link(file, link, capsules))
+    dropped = {}
     for joint in root.findall("joint"):
         reduced.append(_reduced_joint(file, joint))
-    return Description(file, _robot(file, etree.tostring(reduced)), frozenset(capsules))
+        dropped[str(joint.get("name"))] = _dropped(joint)
+    return Description(file, _robot(file, etree.tostring(reduced)), frozenset(capsules), dropped)
+
+
+def _dropped(joint: Any) -> tuple[str, ...]:
+    limit = joint.find("limit")
+    given = [] if limit is None else [name for name in LIMITS_DROPPED if limit.get(name)]
+    return (*given, *(part for part in PARTS_DROPPED if joint.find(part) is not None))
 
 
 def _parsed(file: Path) -> Any:
@@ -62,7 +79,13 @@ def _parsed(file: Path) -> Any:
         recover=True, resolve_entities=False, no_network=True, remove_comments=True
     )
     try:
-        root = etree.fromstring(file.read_bytes(), parser)
+        text = file.read_bytes()
+        if ENTITY in text:
+            raise UrdfError(
+                f"{file}: expected a URDF without entities, got {ENTITY.decode()}; "
+                "write out what they stand for"
+            )
+        root = etree.fromstring(text, parser)
     except OSError as error:
         raise UrdfError(f"{file}: cannot read the file: {error.strerror}") from None
     except etree.XMLSyntaxError as error:
@@ -72,6 +95,9 @@ def _parsed(file: Path) -> Any:
             raise UrdfError(f"{file}:{entry.line}:{entry.column}: broken XML: {entry.message}")
     if root is None:
         raise UrdfError(f"{file}: no XML: the file has no element")
+    internal = root.getroottree().docinfo.internalDTD
+    if internal is not None and any(internal.iterentities()):
+        raise UrdfError(f"{file}: expected a URDF without entities; write out what they stand for")
     return root
 
 
@@ -81,12 +107,14 @@ def _reduced_link(file: Path, link: Any, capsules: set[tuple[str, int]]) -> Any:
     reduced = etree.Element("link", name=name)
     for index, collision in enumerate(link.findall("collision")):
         shape = _shape(file, name, collision)
+        check_numbers(file, f"link {name!r}", shape, _local(shape))
         if _local(shape) == "capsule":
             capsules.add((name, index))
         kept = etree.SubElement(reduced, "collision")
         kind = "cylinder" if _local(shape) == "capsule" else _local(shape)
         etree.SubElement(etree.SubElement(kept, "geometry"), kind, _plain(shape))
         if collision.find("origin") is not None:
+            check_numbers(file, f"link {name!r}", collision.find("origin"), "origin")
             etree.SubElement(kept, "origin", _plain(collision.find("origin")))
     return reduced
 
@@ -119,6 +147,7 @@ def _reduced_joint(file: Path, joint: Any) -> Any:
         etree.SubElement(reduced, role, link=_required(file, element, "link"))
     for part in JOINT_PARTS:
         if joint.find(part) is not None:
+            check_numbers(file, f"joint {name!r}", joint.find(part), part)
             etree.SubElement(reduced, part, _plain(joint.find(part)))
     return reduced
 

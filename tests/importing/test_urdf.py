@@ -253,8 +253,51 @@ BAD = {
     "no parent": ((('<parent link="base"/>', ""),), "'turn': <parent> is missing"),
     "unknown parent": ((('parent link="base"', 'parent link="bse"'),), "'bse' is no link"),
     "no limit": (((LIMIT, ""),), "'turn': a revolute joint needs <limit"),
-    "limits reversed": ((('lower="-1"', 'lower="3"'),), "'turn': expected finite limits"),
-    "endless limit": ((('upper="2"', 'upper="inf"'),), "'turn': expected finite limits"),
+    "limits reversed": (
+        (('lower="-1"', 'lower="3"'),),
+        "'turn': expected limits with lower <= upper",
+    ),
+    "endless limit": (
+        (('upper="2"', 'upper="inf"'),),
+        "'turn': expected both limits within a thousand",
+    ),
+    "scale": (
+        ((BOX, '<mesh filename="broken.stl" scale="1 1"/>'),),
+        ":3: link 'base': .*three num",
+    ),
+    "one angle": ((('rpy="0.1 0.2 0.3"', 'rpy="0"'),), ":11: joint 'turn': .*three numbers, got 1"),
+    "four numbers": ((('xyz="0 0 1"', 'xyz="0 0 1 2"'),), "link 'arm': .*three numbers, got 4"),
+    "huge radius": (
+        (('radius="0.2"', 'radius="1e300"'),),
+        "link 'arm': .*1e-12 to 1e\\+12 m, got 1e300",
+    ),
+    "huge box": (
+        ((BOX, '<box size="1e200 1 1"/>'),),
+        "link 'base': .*1e-12 to 1e\\+12 m, got 1e200",
+    ),
+    "nan": ((('lower="-1"', 'lower="nan"'),), "'turn': .*finite numbers"),
+    "endless shift": (
+        (
+            (JOINT, JOINT.replace("revolute", "prismatic")),
+            ('lower="-1"', 'lower="-1e16"'),
+            ('upper="2"', 'upper="1e16"'),
+        ),
+        "'turn': expected the limits of a prismatic joint within 1e\\+12",
+    ),
+    "entities": (
+        (('<?xml version="1.0"?>', '<?xml version="1.0"?><!DOCTYPE r [<!ENTITY a "x">]>'),),
+        "without entities",
+    ),
+    "nothing moves": (
+        (('lower="-1"', 'lower="0"'), ('upper="2"', 'upper="0"')),
+        "equal: fixed at 0",
+    ),
+    "one point": (((BOX, '<mesh filename="point.obj"/>'),), "link 'base': all points"),
+    "no number": (((BOX, '<mesh filename="nan.obj"/>'),), "link 'base': mesh .*nan.obj: .*got nan"),
+    "huge mesh": (
+        ((BOX, '<mesh filename="huge.obj"/>'),),
+        "link 'base': mesh .*huge.obj: .*1e\\+300",
+    ),
     "axis": ((('xyz="0 2 0"', 'xyz="0 0 0"'),), "'turn': expected an axis"),
     "number": ((('lower="-1"', 'lower="low"'),), "'low'"),
     "two links": ((('link name="arm"', 'link name="base"'),), "called 'base'"),
@@ -279,6 +322,9 @@ def test_bad_input_is_one_clear_error(case, tmp_path):
     replacements, words = BAD[case]
     (tmp_path / "broken.stl").write_bytes(b"solid nothing\x00\xff")
     (tmp_path / "empty.obj").write_text("v 0 0 0\n", encoding="utf-8")
+    for name, number in (("point", "0"), ("nan", "nan"), ("huge", "1e300")):
+        text = f"v 0 0 0\nv 0 0 {number}\nv 0 0 0\nf 1 2 3\n"
+        (tmp_path / f"{name}.obj").write_text(text, encoding="utf-8")
     file = tmp_path / "none.urdf" if replacements is None else written(tmp_path, *replacements)
     with pytest.raises(UrdfError, match=words) as caught:
         import_urdf(file)
@@ -300,3 +346,22 @@ def test_missing_libraries_are_named(monkeypatch, tmp_path):
     monkeypatch.setitem(__import__("sys").modules, "yourdfpy", None)
     with pytest.raises(UrdfError, match=r"pip install.*ellipsoid-planning\[import\]"):
         import_urdf(written(tmp_path))
+
+
+def test_limits_that_mean_none_and_what_is_left_out_are_reported(tmp_path):
+    file = written(tmp_path, ('lower="-1"', 'lower="-1.8e308"'), ('upper="2"', 'upper="1.8e308"'))
+    (joint,) = import_urdf(file).joints
+    assert "mean none: it is taken for continuous" in joint.fate
+    assert joint.changed
+    (other,) = import_urdf(written(tmp_path)).joints
+    assert other.dropped == ("velocity", "effort")
+    assert not other.changed
+
+
+def test_joints_whose_values_would_share_a_key_are_refused(tmp_path):
+    more = (
+        '<link name="c"/><joint name="turn_deg" type="prismatic"><parent link="base"/>'
+        '<child link="c"/><limit lower="0" upper="1"/></joint></robot>'
+    )
+    with pytest.raises(UrdfError, match=r"'turn' and 'turn_deg' .*; rename one of them"):
+        import_urdf(written(tmp_path, ("</robot>", more)))

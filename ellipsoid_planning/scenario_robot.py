@@ -163,11 +163,11 @@ def _limits(entries: Entries, block: JointBlock, path: Path) -> tuple[float, flo
         )
     if block.type == REVOLUTE:
         lower, upper = math.radians(lower), math.radians(upper)
-        problem = None if is_unlimited(lower, upper) else revolute_problem(lower, upper)
+        wrong = None if is_unlimited(lower, upper) else revolute_problem(lower, upper)
     else:
-        problem = shift_problem(lower, upper)
-    if problem is not None:
-        raise entries.error((*place, keys[0]), f"joint {block.name!r}: {problem}")
+        wrong = shift_problem(lower, upper)
+    if wrong is not None:
+        raise entries.error((*place, keys[0]), f"joint {block.name!r}: {wrong}")
     return lower, upper
 
 

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning.errors import PlannerError
+from ellipsoid_planning.numbers_shown import shown
+from planners.parameter_ranges import check_ranges
 
 if TYPE_CHECKING:
     from ompl import base as ob
@@ -294,6 +296,8 @@ def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[s
     }
     if isinstance(entry, OwnPlanner):
         entry.check_values(converted)
+    else:
+        check_ranges(entry.name, converted)
     return converted
 
 
@@ -302,13 +306,20 @@ def _converted(where: str, value: Any, kind: Any) -> Any:
     if type(value) not in (int, float):
         if type(value) in kinds:
             return value
-    elif math.isfinite(value):
+    elif _is_finite(value):
         if int in kinds and float(value).is_integer():
             return int(value)
         if float in kinds:
             return float(value)
     expected = " or ".join("None" if k is type(None) else k.__name__ for k in kinds)
-    raise PlannerError(f"{where}: expected {expected}, got {value!r}")
+    raise PlannerError(f"{where}: expected {expected}, got {shown(value)}")
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer that no double holds
+        return False
 
 
 def _set(planner: str, name: str, value: Any, setter: Any) -> None:

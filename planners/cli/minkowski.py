@@ -85,6 +85,7 @@ def minkowski(
 def _bodies(axes: list[str], zxz: list[str], yaw: list[str]) -> tuple[Ellipsoid, Ellipsoid]:
     from ellipsoid_planning.errors import GeometryError
     from ellipsoid_planning.geometry import Ellipsoid
+    from ellipsoid_planning.sizes import check_semi_axes
 
     if len(axes) != 2:
         raise GeometryError(f"--semi-axes: expected two bodies, got {len(axes)}")
@@ -92,6 +93,7 @@ def _bodies(axes: list[str], zxz: list[str], yaw: list[str]) -> tuple[Ellipsoid,
     for text, values in zip(axes, sizes, strict=True):
         if not all(value > 0.0 for value in values):
             raise GeometryError(f"--semi-axes {text}: expected positive numbers")
+        check_semi_axes(values, f"--semi-axes {text}")
     if len(sizes[0]) != len(sizes[1]):
         raise GeometryError(
             f"--semi-axes: expected two bodies of one dimension, got {len(sizes[0])} axes "

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import io
+import zipfile
 from dataclasses import astuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.array_members import BROKEN, packed_array
 from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
 from ellipsoid_planning.crystal.phasing.run_store import Keeper
 from ellipsoid_planning.crystal.phasing.trace import Trace
@@ -29,8 +32,9 @@ class KeptRefinements:
         """The refinement of ``start`` (K,); see `refine`."""
         name = _name(start, parameters)
         content = self._store.kept(name)
-        if content is not None:
-            return _refined(content)
+        refined = None if content is None else _refined(content)
+        if refined is not None:
+            return refined
         refined = refine(cost, start, parameters)
         self._store.keep(name, _content(refined))
         return refined
@@ -59,8 +63,10 @@ def _content(refined: Refined) -> bytes:
     return content.getvalue()
 
 
-def _refined(content: bytes) -> Refined:
-    with np.load(io.BytesIO(content), allow_pickle=False) as data:
+def _refined(content: bytes) -> Refined | None:
+    """The refinement that was kept; None for what is none of ours, which is done again."""
+    try:
+        data = _members(content)
         trace = Trace()
         for configuration, cost in zip(data["trace"], data["costs"], strict=True):
             trace.add(configuration, cost)
@@ -72,3 +78,13 @@ def _refined(content: bytes) -> Refined:
             int(data["rounds"]),
             float(data["seconds"]),
         )
+    except (TypeError, *BROKEN):
+        return None
+
+
+def _members(content: bytes) -> dict[str, NDArray[Any]]:
+    archive = zipfile.ZipFile(io.BytesIO(content))
+    return {
+        member.filename.removesuffix(".npy"): packed_array(archive, member).read()
+        for member in archive.infolist()
+    }

@@ -116,7 +116,7 @@ def run_settings(model: PackingModel, command: str, **settings: Any) -> dict[str
 def array_bytes(array: NDArray[Any]) -> bytes:
     """An array as bytes that say what it is."""
     content = io.BytesIO()
-    np.save(content, array, allow_pickle=False)
+    np.save(content, np.asarray(array, order="C"), allow_pickle=False)
     return content.getvalue()
 
 

@@ -164,7 +164,10 @@ def done(
 
 def _kept(keeper: Keeper, piece: Piece) -> NDArray[Any] | None:
     content = keeper.kept(piece.key)
-    return None if content is None else bytes_array(content)
+    try:
+        return None if content is None else bytes_array(content)
+    except ValueError:  # it is no piece of ours, so that it is done again
+        return None
 
 
 def _in_turn(

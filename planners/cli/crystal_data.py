@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -14,7 +13,6 @@ if TYPE_CHECKING:
     from ellipsoid_planning.crystal.packing.model import PackingModel
 
 FEW = 0.5  # of the model's reflections; fewer are said to be few
-DATA_SUFFIXES = (".mtz", ".cif", ".mmcif", ".ent")
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +28,12 @@ class Data:
     name: str
     cost: FourierCost
     target: NDArray[np.float64] | None
+
+    @property
+    def remarks(self) -> list[str]:
+        """What to say before the search: how the data were read, and what they cannot tell."""
+        notes = [f"{self.name}: {note}." for note in self.cost.magnitudes.notes]
+        return notes if self.warning is None else [*notes, self.warning]
 
     @property
     def warning(self) -> str | None:
@@ -56,6 +60,7 @@ class Data:
             "source": magnitudes.source,
             "reflections": len(magnitudes),
             "completeness": magnitudes.completeness,
+            "notes": list(magnitudes.notes),
             "scaled": self.cost.scaled,
             "configuration": None if self.target is None else model.values_of(self.target),
         }
@@ -68,6 +73,7 @@ def load_data(
     *,
     skip_missing: bool = False,
     compare: str | None = None,
+    block: str | None = None,
 ) -> Data:
     """The magnitudes of a file, or those of a target's arrangement.
 
@@ -77,6 +83,7 @@ def load_data(
         column: of the file's magnitudes.
         skip_missing: leave reflections of the file without a usable value out.
         compare: with a file, the target that errors are measured against, if it is known.
+        block: of a CIF file, its data block.
 
     Raises:
         EllipsoidPlanningError: something is wrong with them.
@@ -84,16 +91,18 @@ def load_data(
     from ellipsoid_planning.crystal.diffraction.fourier_cost import FourierCost
     from ellipsoid_planning.crystal.diffraction.magnitude_files import read_magnitudes
     from ellipsoid_planning.crystal.diffraction.magnitudes import simulate
+    from ellipsoid_planning.crystal.diffraction.reflection_table import is_reflection_file
     from ellipsoid_planning.crystal.packing.model import load_target
     from ellipsoid_planning.crystal.packing.model_files import locate_data
     from ellipsoid_planning.errors import CrystalError
 
-    if Path(name).suffix.lower() in DATA_SUFFIXES:
-        magnitudes = read_magnitudes(locate_data(name), model, column, skip_missing=skip_missing)
+    file = locate_data(name)
+    if is_reflection_file(file):
+        magnitudes = read_magnitudes(file, model, column, skip_missing=skip_missing, block=block)
         known = None if compare is None else load_target(compare, model)
         return Data(name, FourierCost(model, magnitudes, scaled=magnitudes.relative), known)
-    given = {"--column": column, "--compare": compare, "--skip-missing": skip_missing or None}
-    for option, value in given.items():
+    given = {"--column": column, "--block": block, "--compare": compare}
+    for option, value in (given | {"--skip-missing": skip_missing or None}).items():
         if value is not None:
             raise CrystalError(
                 f"{option}: it belongs to a file of magnitudes, and the target {name} is an "

@@ -101,6 +101,10 @@ def phase(
     column: Annotated[
         str | None, typer.Option(metavar="NAME", help="Of the magnitudes in DATA.")
     ] = None,
+    block: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Of the data block in DATA.cif; the first without it."),
+    ] = None,
     skip_missing: Annotated[
         bool,
         typer.Option("--skip-missing", help="Leave reflections of DATA without a value out."),
@@ -173,9 +177,11 @@ def phase(
     choice = Choice(method, spread, step_deg, starts)
     loaded = load_model(model)
     refinement = Refinement(method=refine.value, threshold=threshold, seed=seed)
-    data = load_data(target, loaded, column, skip_missing=skip_missing, compare=compare)
-    if data.warning is not None:
-        say(data.warning)
+    data = load_data(
+        target, loaded, column, skip_missing=skip_missing, compare=compare, block=block
+    )
+    for remark in data.remarks:
+        say(remark)
     phased = _phased(
         data, best or CANDIDATES[refine], choice, refinement, Workplace(run, cluster, jobs)
     )

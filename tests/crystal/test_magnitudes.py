@@ -1,6 +1,5 @@
 """Magnitudes: simulated, written to MTZ and read again, and what wrong files are told."""
 
-import gemmi
 import numpy as np
 import pytest
 
@@ -15,23 +14,7 @@ from ellipsoid_planning.crystal.diffraction.structure_factors import (
 from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 from tests.crystal.packings import one_body
-
-HEADER = """\
-data_test
-_cell.length_a {a}
-_cell.length_b 22.00(1)
-_cell.length_c 22
-_cell.angle_alpha 90
-_cell.angle_beta 90
-_cell.angle_gamma {gamma}
-_symmetry.space_group_name_H-M '{group}'
-loop_
-_refln.index_h
-_refln.index_k
-_refln.index_l
-"""
-FIT = {"a": 22, "gamma": 90, "group": "P 21 21 21"}
-ROWS = "_refln.F_meas_au\n1 0 1 3.0\n2 0 0 4.0\n"
+from tests.crystal.reflection_files import FIT, HEADER, ROWS, write, write_mtz
 
 
 @pytest.fixture(scope="module")
@@ -42,24 +25,6 @@ def model():
 @pytest.fixture(scope="module")
 def target(model):
     return simulate(model, load_target("rabbit-p212121-target", model))
-
-
-def write(folder, text, **changes):
-    path = folder / "data.cif"
-    path.write_text(HEADER.format(**(FIT | changes)) + text)
-    return path
-
-
-def write_mtz(path, rows, columns, group="P 21 21 21", cell=(22, 22, 22, 90, 90, 90)):
-    mtz = gemmi.Mtz(with_base=True)
-    mtz.spacegroup = gemmi.find_spacegroup_by_name(group)
-    mtz.set_cell_for_all(gemmi.UnitCell(*cell))
-    mtz.add_dataset("data")
-    for label, kind in columns:
-        mtz.add_column(label, kind)
-    mtz.set_data(np.array(rows, dtype=np.float32))
-    mtz.write_to_file(str(path))
-    return path
 
 
 def test_calculated_ones_are_read_only_where_there_are_no_others(model, tmp_path):

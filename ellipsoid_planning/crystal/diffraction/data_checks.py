@@ -13,16 +13,22 @@ LENGTH_TOLERANCE = 0.005
 ANGLE_TOLERANCE_DEG = 0.5
 
 
-def check_crystal(table: ReflectionTable, model: PackingModel) -> None:
+def check_crystal(table: ReflectionTable, model: PackingModel) -> tuple[str, ...]:
     """Check that the cell and the group are the model's, as far as the file tells them.
 
-    A planar model is compared with a, b and gamma only.
+    A planar model is compared with a, b and gamma only. Returns what could not be checked.
 
     Raises:
         ScenarioError: names the length or angle, or the groups.
     """
     _check_cell(table, model)
     _check_group(table, model)
+    absent = []
+    if table.cell is None:
+        absent.append("cell")
+    if table.operations is None and model.dimension == 3:
+        absent.append("space group")
+    return tuple(f"the file tells no {what}: the model's is believed" for what in absent)
 
 
 def _check_cell(table: ReflectionTable, model: PackingModel) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -53,6 +54,7 @@ def read_magnitudes(
     column: str | None = None,
     *,
     skip_missing: bool = False,
+    block: str | None = None,
 ) -> Magnitudes:
     """Read the magnitudes that a model is compared with from an MTZ, CIF or mmCIF file.
 
@@ -66,14 +68,15 @@ def read_magnitudes(
             its kind, else the first of `CALCULATED`. Intensities are made magnitudes by their
             square root.
         skip_missing: leave reflections without a value, or with an intensity below 0, out.
+        block: of a CIF file, its data block; by default the first with reflections.
 
     Raises:
         ScenarioError: names the file, the column, and the reflection whose magnitude is missing
             or negative; or the cell's length or angle, or the group, that is not the model's.
         CrystalError: if gemmi is missing.
     """
-    table = read_table(path)
-    check_crystal(table, model)
+    table = read_table(path, block)
+    notes = (*table.notes, *check_crystal(table, model))
     name = column or _choose(table)
     if name not in table.columns or table.kinds[name] not in (MAGNITUDE, INTENSITY):
         raise ScenarioError(
@@ -82,8 +85,12 @@ def read_magnitudes(
         )
     wanted = reflections_of(model)
     places = _places(table, model, wanted.indices)
-    places[~_usable(table, name, places, skip_missing)] = -1
-    return _merge(table, name, places, wanted)
+    usable = _usable(table, name, places, skip_missing)
+    left = int(np.sum((places >= 0) & ~usable))
+    if left:
+        notes += (f"{left} reflections have no usable value in {name} and are left out",)
+    places[~usable] = -1
+    return replace(_merge(table, name, places, wanted), notes=notes)
 
 
 def _offer(table: ReflectionTable) -> str:

@@ -32,6 +32,7 @@ class Magnitudes:
         source: where they come from, for messages.
         relative: whether they have a scale of their own, as measured ones do.
         missing: (M, n), indices that the model's resolution reaches and the source lacks.
+        notes: what a user should know of how they were read.
 
     Raises:
         CrystalError: if there are none, their number is not that of the reflections, or one is
@@ -44,6 +45,7 @@ class Magnitudes:
     source: str = "magnitudes"
     relative: bool = False
     missing: Integers = field(default_factory=lambda: np.zeros((0, 3), np.int64))
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not len(self.reflections):

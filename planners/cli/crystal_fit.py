@@ -172,6 +172,8 @@ def _number(text: str, option: str) -> float:
 def _warn(model: FittedModel, contacts: list[Contact]) -> None:
     """Say what is not as one might think."""
     fitted = model.fit
+    for note in fitted.structure.notes:
+        say(f"{fitted.structure.file}: {note}.")
     meeting = [contact for contact in contacts if contact.gap < 0.0]
     if meeting:
         deepest = max(-contact.gap for contact in meeting)

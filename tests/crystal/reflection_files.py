@@ -31,9 +31,7 @@ def write(folder, text, **changes):
     return path
 
 
-def write_mtz(
-    path, rows, columns, group="P 21 21 21", cell=(22, 22, 22, 90, 90, 90), missing=None
-):
+def write_mtz(path, rows, columns, group="P 21 21 21", cell=(22, 22, 22, 90, 90, 90), missing=None):
     """``missing`` is the number that stands for a missing value; NaN without it."""
     mtz = gemmi.Mtz(with_base=True)
     mtz.spacegroup = gemmi.find_spacegroup_by_name(group)

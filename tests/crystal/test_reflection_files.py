@@ -33,7 +33,9 @@ def test_the_number_that_stands_for_missing_values_is_none(model, tmp_path, flag
     assert found.notes == ("1 reflections have no usable value in FP and are left out",)
 
 
-@pytest.mark.parametrize("tag", ["_refln.status", "_refln_include_status", "_refln_observed_status"])
+@pytest.mark.parametrize(
+    "tag", ["_refln.status", "_refln_include_status", "_refln_observed_status"]
+)
 @pytest.mark.parametrize("code", ["o", "f", "<", "h", "l", "?", ".", "x", "-", "'x'", "q"])
 def test_reflections_that_the_file_does_not_want_used_are_left_out(model, tmp_path, tag, code):
     text = ROWS.replace("_au\n", f"_au\n{tag}\n").replace("3.0", "3.0 o").replace("4.0", "4.0 ")
@@ -108,7 +110,7 @@ def test_blocks_are_named(model, tmp_path):
     found = read_magnitudes(path, model, block="peak")
     assert found.values.tolist() == [5.0, 4.0] and found.notes == ()
     assert read_magnitudes(path, model, block="test").values.tolist() == [3.0, 4.0]
-    with pytest.raises(ScenarioError, match="no block 'first' with reflections; .* test, peak"):
+    with pytest.raises(ScenarioError, match=r"no block 'first' with reflections; .* test, peak"):
         read_magnitudes(path, model, block="first")
     mtz = write_mtz(tmp_path / "data.mtz", [[1, 0, 1, 3.0]], [("FP", "F")])
     with pytest.raises(ScenarioError, match="an MTZ file has no block 'test'"):
@@ -128,7 +130,7 @@ def test_the_group_is_compared_by_its_operations(model, tmp_path):
     with pytest.raises(ScenarioError, match="space group: expected the model's space group"):
         read_magnitudes(path, model)
     path = write(tmp_path, ROWS + OPERATIONS.format("x,y,z", "x,y"))
-    with pytest.raises(ScenarioError, match="expected a symmetry operation .*got 'x,y'"):
+    with pytest.raises(ScenarioError, match=r"expected a symmetry operation .*got 'x,y'"):
         read_magnitudes(path, model)
 
 
@@ -159,7 +161,7 @@ def test_what_cannot_be_compared_is_said(model, tmp_path):
     ]
     assert load_data(str(path), model).remarks[0].startswith(f"{path}: the file tells no cell")
     for value in ("?", "0", "-22", "x"):
-        with pytest.raises(ScenarioError, match="_cell.length_a: expected a positive number"):
+        with pytest.raises(ScenarioError, match=r"_cell.length_a: expected a positive number"):
             read_magnitudes(write(tmp_path, ROWS, a=value), model)
 
 

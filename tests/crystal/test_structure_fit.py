@@ -42,7 +42,8 @@ from ellipsoid_planning.geometry.dual import gap
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.scenario_origin import Origin
 from planners.cli.main import app
-from tests.crystal.test_structure import CELL, PROTEIN, atom_line, chain_text
+from tests.crystal.structure_texts import CELL, atom_line, chain_text
+from tests.crystal.test_structure import PROTEIN
 
 DOMAINS = ("alpha_beta=A/3-79+191-347", "alpha=A/80-190")
 
@@ -69,7 +70,8 @@ def made_of(points, cell, group, element="C"):
     polymer = np.ones(count, dtype=bool)
     electrons = {"C": 6.0, "S": 16.0}[element] * plain
     radii, zeros = 1.7 * plain, 0.0 * plain
-    atoms = Atoms(points, plain, electrons, radii, plain, zeros, *texts, numbers, polymer)
+    codes = np.full(len(points), "")
+    atoms = Atoms(points, plain, electrons, radii, plain, zeros, *texts, numbers, codes, polymer)
     return CrystalStructure("made", "made.pdb", "", cell, space_group(group), atoms)
 
 

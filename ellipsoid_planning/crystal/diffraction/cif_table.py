@@ -141,9 +141,7 @@ def _indices(file: str, block: Any, prefix: str, tags: Sequence[str]) -> Integer
     return np.stack(indices, axis=1)
 
 
-def _numbers(
-    file: str, field: str, texts: Sequence[str], indices: Integers | None = None
-) -> Array:
+def _numbers(file: str, field: str, texts: Sequence[str], indices: Integers | None = None) -> Array:
     """The numbers of a column; NaN for ``?`` and ``.``, which say that there is none."""
     values = np.full(len(texts), np.nan)
     for row, text in enumerate(texts):

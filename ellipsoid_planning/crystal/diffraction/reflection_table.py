@@ -110,15 +110,15 @@ def operations_of(triplets: list[str], file: str, field: str) -> tuple[str, ...]
     Raises:
         ScenarioError: one is no operation.
     """
-    library = gemmi()
-    found = []
-    for text in triplets:
-        try:
-            found.append(library.Op(text.strip().replace(" ", "")).triplet())
-        except (RuntimeError, ValueError):
-            problem = f"expected a symmetry operation such as -x,y+1/2,-z, got {text!r}"
-            raise ScenarioError(problem, file=file, field=field) from None
-    return tuple(found)
+    return tuple(_operation(text, file, field) for text in triplets)
+
+
+def _operation(text: str, file: str, field: str) -> str:
+    try:
+        return str(gemmi().Op(text.replace(" ", "")).triplet())
+    except (RuntimeError, ValueError):
+        problem = f"expected a symmetry operation such as -x,y+1/2,-z, got {text!r}"
+        raise ScenarioError(problem, file=file, field=field) from None
 
 
 def group_of(symbol: str, cell: tuple[float, ...] | None, file: str) -> Any:

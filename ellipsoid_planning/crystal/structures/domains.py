@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.crystal.structures.residue_ranges import (
+    FORM,
+    Residue,
+    ResidueRange,
+    chosen_atoms,
+    parse_range,
+    sequence,
+)
 from ellipsoid_planning.crystal.structures.structure import CrystalStructure
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 
 Array = NDArray[np.float64]
 
-RANGE = re.compile(r"(?:(?P<chain>[^/]+)/)?(?:(?P<first>-?\d+)(?:-(?P<last>-?\d+))?)?")
-FORM = "expected NAME=CHAIN/FIRST-LAST+…, such as alpha=A/80-190+301-310"
 TRACE = ("CA", "P")  # the atom of each residue that stands for it: in proteins, in nucleic acids
-
-
-@dataclass(frozen=True)
-class ResidueRange:
-    """Residues of one chain, both ends included; None: from the chain's end on."""
-
-    chain: str
-    first: int | None = None
-    last: int | None = None
-
-    def __str__(self) -> str:
-        if self.first is None:
-            return self.chain
-        return f"{self.chain}/{self.first}-{self.last}"
 
 
 @dataclass(frozen=True)
@@ -44,8 +35,7 @@ class Domain:
         texts: list[str] = []
         for index, entry in enumerate(self.ranges):
             repeated = index > 0 and self.ranges[index - 1].chain == entry.chain
-            text = str(entry)
-            texts.append(text.split("/", 1)[1] if repeated and "/" in text else text)
+            texts.append(entry.residues if repeated and entry.first is not None else str(entry))
         return f"{self.name}={'+'.join(texts)}"
 
 
@@ -86,8 +76,9 @@ class Hinge:
 def parse_domain(text: str) -> Domain:
     """Read ``NAME=CHAIN/FIRST-LAST+…``.
 
-    A range without a chain is in that of the range before; a chain alone is all of it, a number
-    alone is one residue.
+    A range without a chain is in that of the range before; a chain alone is all of it (``1/`` and
+    ``-/`` if it is named so), a number alone is one residue. Numbers may have insertion codes
+    (``80A-95``); ``/1-90`` is in a chain without a name.
 
     Raises:
         CrystalError: it is written otherwise; says how it should be.
@@ -97,24 +88,8 @@ def parse_domain(text: str) -> Domain:
         raise CrystalError(f"domain {text!r}: {FORM}")
     ranges: list[ResidueRange] = []
     for entry in listed.split("+"):
-        ranges.append(_parse_range(entry.strip(), ranges[-1].chain if ranges else None, text))
+        ranges.append(parse_range(entry.strip(), ranges[-1].chain if ranges else None, text))
     return Domain(name.strip(), tuple(ranges))
-
-
-def _parse_range(entry: str, chain: str | None, text: str) -> ResidueRange:
-    whole_chain = re.fullmatch(r"[^/\d+-][^/]*", entry)
-    found = None if whole_chain else RANGE.fullmatch(entry)
-    if whole_chain:
-        return ResidueRange(entry)
-    if found is None or found["first"] is None or not (found["chain"] or chain):
-        raise CrystalError(f"domain {text!r}: cannot read the range {entry!r}; {FORM}")
-    first = int(found["first"])
-    last = first if found["last"] is None else int(found["last"])
-    if last < first:
-        raise CrystalError(
-            f"domain {text!r}: the range {entry!r} ends before it begins; exchange its numbers"
-        )
-    return ResidueRange(found["chain"] or str(chain), first, last)
 
 
 def assign(structure: CrystalStructure, domains: Sequence[Domain]) -> NDArray[np.int64]:
@@ -138,35 +113,16 @@ def assign(structure: CrystalStructure, domains: Sequence[Domain]) -> NDArray[np
     owners = np.full(len(structure.atoms), -1, dtype=np.int64)
     for index, domain in enumerate(domains):
         chosen = _chosen(structure, domain)
-        _check_overlap(structure, domains, owners[chosen], structure.atoms.residues[chosen], index)
+        _check_overlap(structure, domains, owners, chosen, index)
         owners[chosen] = index
     return owners
 
 
 def _chosen(structure: CrystalStructure, domain: Domain) -> NDArray[np.bool_]:
     """Which atoms (m,) are in the domain."""
-    atoms = structure.atoms
-    chosen = np.zeros(len(atoms), dtype=np.bool_)
+    chosen = np.zeros(len(structure.atoms), dtype=np.bool_)
     for part in domain.ranges:
-        if part.chain not in structure.chains:
-            raise ScenarioError(
-                f"there is no chain {part.chain!r} with a polymer; there are "
-                f"{', '.join(structure.chains) or 'none'}",
-                file=structure.file,
-                field=f"domain {domain}",
-            )
-        here = atoms.polymer & (atoms.chains == part.chain)
-        numbers = atoms.residues[here]
-        if part.first is not None and part.last is not None:
-            here &= (atoms.residues >= part.first) & (atoms.residues <= part.last)
-        if not np.any(here):
-            raise ScenarioError(
-                f"there are no residues {part.first} to {part.last} in chain {part.chain}; it has "
-                f"{numbers.min()} to {numbers.max()}",
-                file=structure.file,
-                field=f"domain {domain}",
-            )
-        chosen |= here
+        chosen |= chosen_atoms(structure, part, str(domain))
     return chosen
 
 
@@ -174,15 +130,15 @@ def _check_overlap(
     structure: CrystalStructure,
     domains: Sequence[Domain],
     owners: NDArray[np.int64],
-    residues: NDArray[np.int64],
+    chosen: NDArray[np.bool_],
     index: int,
 ) -> None:
-    taken = np.flatnonzero(owners >= 0)
+    taken = np.flatnonzero(chosen & (owners >= 0))
     if len(taken):
         other = domains[int(owners[taken[0]])]
         raise ScenarioError(
-            f"residue {residues[taken[0]]} is also in the domain {other}; domains must not "
-            "overlap, change one of the ranges",
+            f"residue {structure.atoms.residue_name(taken[0])} is also in the domain {other}; "
+            "domains must not overlap, change one of the ranges",
             file=structure.file,
             field=f"domain {domains[index]}",
         )
@@ -207,7 +163,7 @@ def find_hinges(
             first, second = sorted((int(owners[rows[start]]), int(owners[rows[stop]])))
             middle = structure.atoms.positions[rows[start : stop + 1]].mean(axis=0)
             points.setdefault((first, second), []).append(middle)
-            before, after = structure.atoms.residues[rows[[start, stop]]]
+            before, after = (structure.atoms.residue_name(rows[k]) for k in (start, stop))
             crossings.setdefault((first, second), []).append(f"{chain}/{before}-{after}")
     return tuple(
         Hinge(domains[i].name, domains[j].name, np.array(found), tuple(crossings[i, j]))
@@ -222,9 +178,10 @@ def _traces(structure: CrystalStructure) -> list[tuple[str, NDArray[np.int64]]]:
     traces = []
     for chain in structure.chains:
         rows = np.flatnonzero(traced & (atoms.chains == chain))
-        # The first of alternative positions.
-        rows = rows[np.unique(atoms.residues[rows], return_index=True)[1]]
-        traces.append((chain, rows))
+        firsts: dict[Residue, int] = {}  # the first of alternative positions
+        for row in rows.tolist():
+            firsts.setdefault(atoms.residue(row), row)
+        traces.append((chain, np.array([firsts[one] for one in sequence(list(firsts))], int)))
     return traces
 
 

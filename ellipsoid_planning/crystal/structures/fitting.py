@@ -182,8 +182,7 @@ def _check(shape: str, parts: int, scale: float) -> None:
 
 
 def _residues(atoms: Atoms, rows: Rows) -> int:
-    pairs = zip(atoms.chains[rows].tolist(), atoms.residues[rows].tolist(), strict=True)
-    return len(set(pairs))
+    return len({(str(atoms.chains[row]), *atoms.residue(row)) for row in rows})
 
 
 def _fit(

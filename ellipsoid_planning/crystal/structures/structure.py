@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ellipsoid_planning.crystal.structures.frame import into_cell_frame, read_cell
+from ellipsoid_planning.crystal.structures.structure_parsing import parse_structure
 from ellipsoid_planning.crystal.symmetry.catalogue import gemmi, space_group
 from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 from ellipsoid_planning.crystal.symmetry.unit_cell import UnitCell
@@ -27,7 +29,7 @@ class Atoms:
     """The atoms of a structure, heavier than hydrogen and not of water; arrays are read-only.
 
     Attributes:
-        positions: Cartesian, shape (m, 3) [Å].
+        positions: Cartesian, in the cell's frame, shape (m, 3) [Å].
         masses: with occupancies, and each with its share of the hydrogens of its residue, which
             most files leave out, shape (m,) [Da].
         electrons: likewise, with those of hydrogens, shape (m,).
@@ -38,6 +40,7 @@ class Atoms:
         names: such as CA, shape (m,).
         chains: names of chains, in mmCIF files those of the authors, shape (m,).
         residues: sequence numbers, in mmCIF files those of the authors, shape (m,).
+        insertions: insertion codes of residues, mostly empty, shape (m,).
         polymer: true for atoms of a chain, false for ligands and ions, shape (m,).
     """
 
@@ -51,10 +54,19 @@ class Atoms:
     names: Texts
     chains: Texts
     residues: NDArray[np.int64]
+    insertions: Texts
     polymer: NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.positions)
+
+    def residue(self, row: int) -> tuple[int, str]:
+        """The number and insertion code of an atom's residue."""
+        return int(self.residues[row]), str(self.insertions[row])
+
+    def residue_name(self, row: int) -> str:
+        """The same as text, such as 52 or 52A."""
+        return "{}{}".format(*self.residue(row))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +77,10 @@ class CrystalStructure:
         name: the entry's, or the file's without its suffix.
         file: where it came from.
         title: what the file says it is, possibly nothing.
-        cell: with the atoms' Cartesian axes.
+        cell: with a along x and b in the xy-plane; coordinates of other frames are moved there.
         group: in the file's setting.
         atoms: of the first model.
+        notes: what a user should know of how the file was read.
     """
 
     name: str
@@ -76,6 +89,7 @@ class CrystalStructure:
     cell: UnitCell
     group: SpaceGroup
     atoms: Atoms
+    notes: tuple[str, ...] = ()
 
     @property
     def chains(self) -> tuple[str, ...]:
@@ -96,69 +110,23 @@ def read_structure(path: str | Path) -> CrystalStructure:
     """
     file = str(path)
     library = gemmi()
-    found = _parsed(library, Path(path))
-    found.setup_entities()
-    atoms = _atoms(library, found, file)
-    cell, group = _cell(found, file), _group(library, found, file)
+    found, notes = parse_structure(Path(path))
+    cell, group = read_cell(found, file), _group(library, found, file)
     try:
         group.check_cell(cell)
     except CrystalError as error:
         raise ScenarioError(str(error), file=file, field="CRYST1") from None
-    name = found.name or Path(path).name.split(".")[0]
+    frame = into_cell_frame(found, cell, file)
+    atoms = _atoms(library, found, file, frame)
+    if found.cell.explicit_matrices:
+        notes += ("the coordinates are moved into the frame of the cell (SCALE has another)",)
+    name = _info(found, "_entry.id") or Path(path).name.split(".")[0] or "structure"
     title = " ".join(_info(found, "_struct.title").split())
-    return CrystalStructure(name, file, title, cell, group, atoms)
-
-
-def _parsed(library: Any, path: Path) -> Any:
-    """Gemmi's structure, with at least one model."""
-    file = str(path)
-    if path.is_dir():
-        raise ScenarioError("expected a file with coordinates, this is a folder", file=file)
-    try:
-        path.open("rb").close()
-    except OSError as error:
-        raise ScenarioError(f"cannot read the file: {error.strerror}", file=file) from None
-    try:
-        found = library.read_structure(file)
-    except (RuntimeError, ValueError, OSError) as error:
-        raise ScenarioError(
-            f"expected coordinates in the PDB or mmCIF format (.pdb, .ent, .cif, .gz): "
-            f"{' '.join(str(error).split())}",
-            file=file,
-        ) from None
-    if not len(found) or not any(len(residue) for chain in found[0] for residue in chain):
-        raise ScenarioError(
-            "expected atoms, there are none; is this a file of coordinates?", file=file
-        )
-    if any(not operation.given for operation in found.ncs):
-        raise ScenarioError(
-            "the file has only a part of the asymmetric unit, the rest is given by operations; "
-            "write out all of it",
-            file=file,
-            field="MTRIX",
-        )
-    return found
+    return CrystalStructure(name, file, title, cell, group, atoms, notes)
 
 
 def _info(found: Any, tag: str) -> str:
     return str(found.info[tag]) if tag in found.info else ""
-
-
-def _cell(found: Any, file: str) -> UnitCell:
-    if not found.cell.is_crystal():
-        raise ScenarioError(
-            "expected a unit cell, there is none; structures that are not from crystals have no "
-            "packing. Add the line CRYST1 (in mmCIF: _cell) from the original entry",
-            file=file,
-            field="CRYST1",
-        )
-    lengths, angles = found.cell.parameters[:3], found.cell.parameters[3:]
-    try:
-        if found.cell.explicit_matrices:  # other axes than a along x and b in the xy-plane
-            return UnitCell(np.array(found.cell.orth.mat.tolist()))
-        return UnitCell.from_parameters(lengths, angles)
-    except CrystalError as error:
-        raise ScenarioError(str(error), file=file, field="CRYST1") from None
 
 
 def _group(library: Any, found: Any, file: str) -> SpaceGroup:
@@ -177,8 +145,8 @@ def _group(library: Any, found: Any, file: str) -> SpaceGroup:
         raise ScenarioError(str(error), file=file, field="CRYST1") from None
 
 
-def _atoms(library: Any, found: Any, file: str) -> Atoms:
-    """The atoms of the first model that count."""
+def _atoms(library: Any, found: Any, file: str, frame: tuple[Array, Array]) -> Atoms:
+    """The atoms of the first model that count, moved by a rotation and a shift."""
     rows: list[tuple[Any, ...]] = []
     for chain in found[0]:
         for residue in chain:
@@ -189,6 +157,7 @@ def _atoms(library: Any, found: Any, file: str) -> Atoms:
     positions = np.array(columns[0], dtype=float)
     if not np.all(np.isfinite(positions)):
         raise ScenarioError("expected finite coordinates of all atoms", file=file)
+    positions = positions @ frame[0].T + frame[1]
     numbers = [_read_only(np.array(column, dtype=float)) for column in columns[1:6]]
     texts = [_read_only(np.array(column, dtype=np.str_)) for column in columns[6:9]]
     return Atoms(
@@ -202,7 +171,8 @@ def _atoms(library: Any, found: Any, file: str) -> Atoms:
         names=texts[1],
         chains=texts[2],
         residues=_read_only(np.array(columns[9], dtype=np.int64)),
-        polymer=_read_only(np.array(columns[10], dtype=np.bool_)),
+        insertions=_read_only(np.array(columns[10], dtype=np.str_)),
+        polymer=_read_only(np.array(columns[11], dtype=np.bool_)),
     )
 
 
@@ -223,7 +193,14 @@ def _row(chain: str, residue: Any, atom: Any, factor: float, polymer: bool) -> t
     electrons = (element.atomic_number + hydrogens) * atom.occ
     numbers = mass, electrons, element.vdw_r, atom.occ, atom.b_iso
     texts = element.name, atom.name, chain
-    return atom.pos.tolist(), *numbers, *texts, residue.seqid.num, polymer
+    return (
+        atom.pos.tolist(),
+        *numbers,
+        *texts,
+        residue.seqid.num,
+        residue.seqid.icode.strip(),
+        polymer,
+    )
 
 
 def _hydrogen_factor(library: Any, residue: Any, polymer: bool) -> float:

@@ -25,12 +25,18 @@ class UndecidedError(AssertionError):
     """The two bodies are closer to contact than 60 digits can tell."""
 
 
-def decimals(array: NDArray[np.float64] | Sequence[float]) -> Vector:
-    """A vector as exact decimals."""
-    return [Decimal(float(value)) for value in array]
+def _decimal(value: float | np.longdouble) -> Decimal:
+    """A number of up to 106 bits, exactly."""
+    high = float(value)
+    return Decimal(high) + Decimal(float(value - high))
 
 
-def _matrix(array: NDArray[np.float64]) -> Matrix:
+def decimals(array: NDArray[np.floating] | Sequence[float]) -> Vector:
+    """A vector, double or long double, as exact decimals."""
+    return [_decimal(value) for value in array]
+
+
+def _matrix(array: NDArray[np.floating]) -> Matrix:
     return [decimals(row) for row in array]
 
 

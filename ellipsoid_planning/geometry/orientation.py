@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.errors import GeometryError
 
 ORTHONORMALITY_TOLERANCE = 1e-9
+# What products of rotations are off by through rounding.
+_ORTHONORMAL = 1e-14
 
 
 def normalised_heading(yaw: float) -> float:
@@ -81,7 +83,8 @@ def quaternion_from_rotation(rotation: ArrayLike) -> NDArray[np.float64]:
 def check_rotation(rotation: ArrayLike, dimension: int) -> NDArray[np.float64]:
     """Return `rotation` as a new (dimension, dimension) array, or raise GeometryError.
 
-    A rotation is orthonormal to 1e-9 and keeps the handedness.
+    A rotation is orthonormal to 1e-9 and keeps the handedness. Unless it is so to rounding, the
+    nearest rotation is returned: bodies are inverted by transposing it.
     """
     matrix = np.array(rotation, dtype=float)
     if matrix.shape != (dimension, dimension):
@@ -94,4 +97,7 @@ def check_rotation(rotation: ArrayLike, dimension: int) -> NDArray[np.float64]:
         )
     if np.linalg.det(matrix) < 0.0:
         raise GeometryError("expected a rotation, got a reflection (its determinant is -1)")
+    if error > _ORTHONORMAL:
+        # One step of Newton's method for the polar factor squares the error.
+        return np.asarray(0.5 * (matrix + np.linalg.inv(matrix).T))
     return matrix

@@ -11,6 +11,12 @@ v = (μI − S)⁻¹w the slope of g is 1 − vᵀSv: the secular equation of a 
 A clearance r is asked for in two ways, of which either suffices: the part grown to
 (1 + 1/p)Σ + (1 + p)r²I, which encloses part ⊕ ball for every p > 0 and touches it at the normal u
 where p = |Aᵀu|/r; or the arena shrunk to an ellipsoid inside arena ⊖ ball (BODY_WHITEN).
+
+*Rounding.* Entries of S and the solution for μI − S are off by as much as if μI − S were, by some
+20 ε μ: trace S < 3μ, and LDLᵀ is backward stable. A matrix that is off by δ lies between those of
+μ − δ and μ + δ, and any μ is safe: so g is safe up to the factor 1 + 20 ε, however thin the part
+and however near μ is to an eigenvalue (4 ROUNDING = 128 ε are added). w and E are off by some
+10 ε |A_a⁻¹| S_c with S_c the scene's scale, and g by twice that (6 ROUNDING = 192 ε are added).
 """
 
 import math

@@ -12,6 +12,20 @@ clearance ε.
 *Arenas.* A ball is convex in the arena's own norm: if a point of the part has the margin δ at both
 ends of a piece, it stays inside as long as its path bulges less than δ from the chord, which is at
 most K (b − a)²/8 for paths of acceleration K.
+
+*Rounding.* With ε the spacing of doubles at 1 and S the scene's scale, which nothing that is added
+here exceeds but for a factor of 2 or the angle (≤ π):
+
+- A part at s is a body moved by at most 20 ε S: the quaternion is off by a few ε whatever its
+  length, and the axis' error, ε over the sine, counts only times the angle.
+- Value, f′ and K are those of that very body up to the last sums: its matrix' column of length a is
+  off by a few ε a, so that f is off by 10 ε S, f′ by 10 ε (|Δx| + φ reach), however thin the body
+  is along u, and Δ ≤ 1/2 from the middle of a piece. Together less than 50 ε S.
+- Where the terms of K cancel, K is off by 20 ε φ² a: both are small against |Bᵀu| only where the
+  other is not. Relative errors of K, and of f′, are covered by the hair that each reach lacks.
+- Ends of pieces are off by ε/2 in s: as much as 2 ε S.
+
+All of it is less than the 2 ROUNDING S = 64 ε S by which the gap must exceed the clearance.
 """
 
 import math
@@ -59,9 +73,10 @@ _STACK = 128
 
 @kernel
 def _place_at(parts, i, motion, s, placed):
-    """Write part ``i`` at parameter ``s`` of the motion to ``placed[0]``.
+    """Write part ``i`` at parameter ``s`` of the motion to ``placed[0]``: its lever (3 numbers).
 
-    ``motion`` holds x₀ (3), Δx (3), q₀ (4), the axis (3) and the angle.
+    That is the part's centre relative to the base. ``motion`` holds x₀ (3), Δx (3), q₀ (4), the
+    axis (3) and the angle.
     """
     half = 0.5 * s * motion[13]
     sine = math.sin(half)
@@ -77,15 +92,13 @@ def _place_at(parts, i, motion, s, placed):
             motion[9],
         )
     )
-    x = motion[0] + s * motion[3]
-    y = motion[1] + s * motion[4]
-    z = motion[2] + s * motion[5]
-    place_part(parts, i, x, y, z, rotation, placed, 0)
-    return (
-        placed[0, PLACED_CENTRE] - x,
-        placed[0, PLACED_CENTRE + 1] - y,
-        placed[0, PLACED_CENTRE + 2] - z,
-    )
+    # The lever comes first: far from the origin it would be lost in the difference of positions.
+    place_part(parts, i, 0.0, 0.0, 0.0, rotation, placed, 0)
+    rx, ry, rz = placed[0, PLACED_CENTRE], placed[0, PLACED_CENTRE + 1], placed[0, PLACED_CENTRE + 2]
+    placed[0, PLACED_CENTRE] = motion[0] + s * motion[3] + rx
+    placed[0, PLACED_CENTRE + 1] = motion[1] + s * motion[4] + ry
+    placed[0, PLACED_CENTRE + 2] = motion[2] + s * motion[5] + rz
+    return rx, ry, rz
 
 
 @kernel
@@ -126,9 +139,13 @@ def _reach(value, slope, bend):
 
     For value > 0 and bend ≥ 0. Either form adds numbers of one sign, so its relative error is a few
     units of rounding, which the hair (1e-6) covers; root − |slope| would be noise where value is
-    tiny against slope².
+    tiny against slope². What is too large to tell, or no number, reaches nowhere.
     """
     root = math.sqrt(slope * slope + 2.0 * bend * value)
+    if not root < math.inf:
+        return 0.0
+    # No less than |slope| even where the squares are too small for doubles.
+    root = max(root, abs(slope))
     if slope < 0.0:
         return 0.999999 * 2.0 * value / (root - slope)
     if bend == 0.0:
@@ -158,10 +175,10 @@ def _pair_is_free(obstacles, j, parts, i, motion, required, placed, stack):
         right = _reach(value - required, slope, bend)
         if depth + 2 > stack.shape[0]:
             return -count
-        if left < half:
+        if not left >= half:
             stack[depth, 0], stack[depth, 1] = low, middle - left
             depth += 1
-        if right < half:
+        if not right >= half:
             stack[depth, 0], stack[depth, 1] = middle + right, high
             depth += 1
     return count

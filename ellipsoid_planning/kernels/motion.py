@@ -94,7 +94,11 @@ def _place_at(parts, i, motion, s, placed):
     )
     # The lever comes first: far from the origin it would be lost in the difference of positions.
     place_part(parts, i, 0.0, 0.0, 0.0, rotation, placed, 0)
-    rx, ry, rz = placed[0, PLACED_CENTRE], placed[0, PLACED_CENTRE + 1], placed[0, PLACED_CENTRE + 2]
+    rx, ry, rz = (
+        placed[0, PLACED_CENTRE],
+        placed[0, PLACED_CENTRE + 1],
+        placed[0, PLACED_CENTRE + 2],
+    )
     placed[0, PLACED_CENTRE] = motion[0] + s * motion[3] + rx
     placed[0, PLACED_CENTRE + 1] = motion[1] + s * motion[4] + ry
     placed[0, PLACED_CENTRE + 2] = motion[2] + s * motion[5] + rz

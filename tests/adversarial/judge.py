@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests import exact, oracles
+from tests import exact, motion_oracle, oracles
 from tests.oracles import Body
 
 Wide = NDArray[np.longdouble]
@@ -90,7 +90,7 @@ def distance_above(c: Wide, a1: Wide, a2: Wide, u: Wide) -> Wide:
 
 
 def are_closer(c: Wide, a1: Wide, a2: Wide, u: Wide, clearance: float) -> bool:
-    """Whether two bodies (n,), (n, n), (n, n) are proved to be closer than ``clearance``, or meet."""
+    """Whether two bodies at c (n,) from each other are proved closer than this, or to meet."""
     if clearance > 0.0 and distance_above(c[None], a1[None], a2[None], u[None])[0] < clearance:
         return True
     zero = np.zeros(len(c), dtype=np.longdouble)
@@ -122,3 +122,21 @@ def _farthest(w: Wide, e: Wide, steps: int) -> Wide:
     last = wide(z)
     last = last / np.maximum(_norm(last), np.longdouble(1e-300))[:, :, None]
     return w[:, None] + np.einsum("mij,mkj->mki", e, last)
+
+
+def room_along(arena: Wide, c: Wide, matrices: Wide, u: Wide) -> Wide:
+    """h_a(u) − h(u) (m,): the part is nowhere farther from the wall than for any unit u (m, n)."""
+    outer = supports(np.broadcast_to(arena, matrices.shape), u)[0]
+    return outer - supports(matrices, u)[0] - (u * c).sum(-1)
+
+
+def rooms(arena: Wide, c: Wide, matrices: Wide) -> tuple[Wide, Wide]:
+    """Least room (m,) found between parts and the wall of a centred arena, and its normal."""
+    own, offsets, parts = (np.asarray(x, dtype=np.float64) for x in (arena, c, matrices))
+    grid = oracles.sphere_grid(300, c.shape[1])
+    inner = np.linalg.norm(np.einsum("ku,mui->mki", grid, parts), axis=2)
+    found = np.linalg.norm(grid @ own, axis=1) - inner - offsets @ grid.T
+    starts = np.argsort(found, axis=1)[:, :3]
+    u = wide(motion_oracle._polished_rooms(own, parts, offsets, grid[starts], 0.3)[1])
+    u = u / _norm(u)[:, None]
+    return room_along(arena, c, matrices, u), u

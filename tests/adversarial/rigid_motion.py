@@ -1,4 +1,4 @@
-"""Where the parts of a rigid robot are along OMPL's motions, in long double, and how close they come.
+"""Where a rigid robot's parts are along OMPL's motions, in long double, and how close they come.
 
 Written anew from the description of the motion; nothing of the kernels is used.
 """
@@ -16,8 +16,9 @@ from ellipsoid_planning.scenario import Scenario
 from tests.adversarial.judge import (
     Wide,
     are_closer,
-    distance_above,
     gaps,
+    room_along,
+    rooms,
     sticking_out,
     wide,
 )
@@ -31,7 +32,7 @@ _TURN = 2 * np.arctan2(np.longdouble(0), np.longdouble(-1))
 
 
 class Track(NamedTuple):
-    """A motion: positions from ``position`` by ``move``, turned by up to ``angle`` about ``axis``."""
+    """A motion: from ``position`` by ``move``, turned by up to ``angle`` about ``axis``."""
 
     position: Wide
     move: Wide
@@ -114,17 +115,26 @@ def _ways(angle: np.longdouble) -> list[np.longdouble]:
     return [angle, angle - _TURN * np.sign(angle)]
 
 
-def closest(scenario: Scenario, first, last, hints: tuple[float, ...] = (), count: int = 49):  # noqa: ANN201
-    """The :class:`Closest` of all that OMPL may do between two configurations.
+def closest(
+    scenario: Scenario,
+    first: NDArray[np.float64],
+    last: NDArray[np.float64],
+    hints: tuple[float, ...] = (),
+    count: int = 49,
+    *,
+    zoom: bool = True,
+) -> Closest:
+    """The place where all that OMPL may do between two configurations comes closest to a body.
 
-    Gaps are sampled, then narrowed down about the lowest samples; ``hints`` are looked at too.
+    Gaps are sampled and, to ``zoom``, narrowed down about the lowest samples; ``hints`` are looked
+    at too.
     """
     s = np.unique(np.concatenate([np.linspace(0, 1, count), hints]))
     found = [
         place
         for track in tracks(scenario.robot, first, last)
         for pair in _pairs(scenario)
-        for place in _lowest(scenario, track, pair, s)
+        for place in _lowest(scenario, track, pair, s, zoom)
     ]
     return min(found, key=lambda place: place.gap)
 
@@ -138,41 +148,44 @@ def _pairs(scenario: Scenario) -> Iterator[tuple[int, int, bool]]:
 def values(
     scenario: Scenario, track: Track, pair: tuple[int, int, bool], s: NDArray[np.floating]
 ) -> tuple[Wide, Wide]:
-    """Gaps or rooms (m,) of a pair at ``s`` (m,), with normals (m, n) from obstacles to the part.
+    """Gaps or rooms (m,) of a pair at ``s`` (m,), with unit normals (m, n).
 
-    The room in an arena is in units of its smallest semi-axis: no more than the distance.
+    Normals point from obstacles to the part, and out of arenas. The room of a scenario without
+    clearance is in units of the arena's smallest semi-axis, as an extent tells best whether a thin
+    part sticks out, and has no normal; else it is the distance from the wall.
     """
     i, j, is_arena = pair
     body = (scenario.world.arenas if is_arena else scenario.world.obstacles)[j]
     c, matrices = _relative(scenario, track, i, body, s)
     own = wide(body.matrix)
-    if is_arena:
-        extents = sticking_out(own, c, matrices)
-        return (1 - extents) * body.semi_axes.min(), np.zeros_like(c)
-    return gaps(c, np.broadcast_to(own, matrices.shape), matrices)
+    if not is_arena:
+        return gaps(c, np.broadcast_to(own, matrices.shape), matrices)
+    if scenario.clearance > 0.0:
+        return rooms(own, c, matrices)
+    return (1 - sticking_out(own, c, matrices)) * body.semi_axes.min(), np.zeros_like(c)
 
 
-def _relative(scenario, track, i, body, s):  # noqa: ANN202
+def _relative(scenario, track, i, body, s):
     """Centres (m, n) of part ``i`` relative to a body's, and its matrices (m, n, n), at ``s``."""
     part = scenario.robot.parts[i]
     positions, turns = track.at(s)
     return positions - wide(body.centre) + turns @ wide(part.centre), turns @ wide(part.matrix)
 
 
-def _lowest(scenario, track, pair, s):  # noqa: ANN202
+def _lowest(scenario, track, pair, s, zoom):
     """The lowest places of one pair along one track."""
     found, normals = values(scenario, track, pair, s)
     places = []
-    for k in local_minima(found)[:3]:
+    for k in local_minima(found)[: 3 if zoom else 1]:
         low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
         best = found[k], s[k], normals[k]
-        for _ in range(7):
-            near = np.linspace(low, high, 13)
+        for _ in range(7 if zoom else 0):
+            near = np.linspace(low, high, 11)
             trial, directions = values(scenario, track, pair, near)
             j = int(trial.argmin())
             if trial[j] < best[0]:
                 best = trial[j], near[j], directions[j]
-            low, high = near[max(j - 1, 0)], near[min(j + 1, 12)]
+            low, high = near[max(j - 1, 0)], near[min(j + 1, 10)]
         places.append(Closest(float(best[0]), track, float(best[1]), *pair, best[2]))
     return places
 
@@ -183,14 +196,8 @@ def is_proved_closer(scenario: Scenario, place: Closest) -> bool:
     body = bodies[place.body]
     c, matrices = _relative(scenario, place.track, place.part, body, np.array([place.s]))
     own = wide(body.matrix)
-    if place.is_arena:
+    if place.is_arena and scenario.clearance == 0.0:
         return bool(sticking_out(own, c, matrices)[0] > 1)
+    if place.is_arena:
+        return bool(room_along(own, c, matrices, place.normal[None])[0] < scenario.clearance)
     return are_closer(c[0], own, matrices[0], place.normal, scenario.clearance)
-
-
-def distance_at(scenario: Scenario, place: Closest) -> float:
-    """An upper bound of the distance of the pair at a place of positive gap."""
-    body = scenario.world.obstacles[place.body]
-    c, matrices = _relative(scenario, place.track, place.part, body, np.array([place.s]))
-    own = wide(body.matrix)[None]
-    return float(distance_above(c, own, matrices, place.normal[None])[0])

@@ -27,8 +27,8 @@ def test_what_is_nearly_a_rotation_becomes_one(dimension: int) -> None:
 def test_no_part_is_said_to_be_inside_an_arena_that_is_off_by_a_little(dimension: int) -> None:
     """The arena's stored matrix was smaller by 4e-10 than the one that the decision inverted."""
     rng = np.random.default_rng(2)
-    rotation = random_scenes.rotation(rng, dimension) * (1.0 - 4e-10)
-    arena = Ellipsoid(np.zeros(dimension), rotation, np.linspace(2.0, 3.0, dimension))
-    part = Ellipsoid.from_semi_axes((1.0 - 2e-10) * arena.semi_axes, rotation=arena.rotation)
+    rotation, axes = random_scenes.rotation(rng, dimension), np.linspace(2.0, 3.0, dimension)
+    arena = Ellipsoid(np.zeros(dimension), (1.0 - 4e-10) * rotation, axes)
+    part = Ellipsoid(np.zeros(dimension), rotation, (1.0 - 2e-10) * axes)
     inside = exact.is_contained(oracles.body_of(arena), oracles.body_of(part))
     assert containment_of(part, arena).extent > 1.0 or inside

@@ -26,7 +26,9 @@ _KINDS = {
     PRISMATIC: layout.PRISMATIC,
     BALL: layout.BALL,
 }
-# Forward kinematics rounds a few times a joint; the scene's scale grows by this share for each.
+# A joint, fixed or not, adds up to 10 units of rounding times what hangs on it: 3 for each of a
+# row's entries, for each of two matrix products and a sum. ROUNDING is 32 units, and the scene's
+# scale grows by this share for each joint.
 _ROUNDING_PER_JOINT = 0.3
 
 
@@ -179,6 +181,11 @@ def pack_kinematics(
     return packed
 
 
+def rounding_share(robot: ArticulatedRobot) -> float:
+    """By how much more kinematics round than a single rigid motion does; fixed joints count."""
+    return 1.0 + _ROUNDING_PER_JOINT * len(robot.joints)
+
+
 def pack_articulated_scene(
     world: World, robot: ArticulatedRobot, bodies: Bodies, clearance: float
 ) -> Array:
@@ -196,6 +203,6 @@ def pack_articulated_scene(
             scene[first : first + 3] = at
         own = float(np.linalg.norm(at)) + reach
         scene[scene_layout.SCALE] = max(float(scene[scene_layout.SCALE]), own)
-    scene[scene_layout.SCALE] *= 1.0 + _ROUNDING_PER_JOINT * len(bodies.joints)
+    scene[scene_layout.SCALE] *= rounding_share(robot)
     scene.setflags(write=False)
     return scene

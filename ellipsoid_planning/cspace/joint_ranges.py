@@ -10,7 +10,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.articulated_packing import Bodies, bodies_of, pack_kinematics
+from ellipsoid_planning.cspace.articulated_packing import (
+    Bodies,
+    bodies_of,
+    pack_kinematics,
+    rounding_share,
+)
 from ellipsoid_planning.cspace.joint_routes import Route, packed_joints, route_between
 from ellipsoid_planning.kernels import joint_boxes, layout
 from ellipsoid_planning.kernels.kinematics import JOINT_PARENT, joint_rows
@@ -77,7 +82,7 @@ class JointBoxes:
             for link in robot.links
         }
         # Frames are relative to a body of the robot: coordinates stay within twice its reach.
-        scale = 2.0 * robot.reach * (1.0 + 0.3 * len(self._joints))
+        scale = 2.0 * robot.reach * rounding_share(robot)
         self._required = 2.0 * layout.ROUNDING * scale
         far = max([np.pi, *(abs(v) for j in self._joints for v in (j.lower, j.upper))])
         self._tolerance = _TOLERANCE + 8.0 * _EPSILON * far

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .articulated_rates import (
+    BOUND_ANGLE_ERROR,
+    BOUND_PLACE_ERROR,
     BOUND_SPEED,
     BOUND_SPIN,
     BOUNDS,
@@ -122,7 +124,10 @@ def _extrapolate(frames, b, placed, i, half, before, after):
 def place_piece(scene, kinematics, work, level, half):
     """Place the robot in the middle of a piece, and the parts that are left at both tangents.
 
-    ``work.room`` receives what their points may leave their tangents by.
+    ``work.room`` receives what their points may leave their tangents by: by their acceleration, by
+    the error of the row that the tangents start from, and by rounding. The last has two parts: s
+    and the tangents' ends are rounded by less than 2⁻⁵² of the way, coordinates by some 30
+    roundings (see layout); the scale has a share for each joint, since kinematics round at each.
     """
     parts, owners = part_rows(scene), owners_of(kinematics)
     body_frames(kinematics, work.row, work.frames)
@@ -137,5 +142,8 @@ def place_piece(scene, kinematics, work, level, half):
             reach = parts[i, PART_REACH]
             bend = work.local[b, LOCAL_ACCELERATION] + work.local[b, LOCAL_TURN] * reach
             speed = work.bounds[b, BOUND_SPEED] + abs(work.bounds[b, BOUND_SPIN]) * reach
-            work.room[i] = 0.5 * bend * half * half + 2.0 * ROUNDING * (scene[SCALE] + speed)
+            error = work.bounds[b, BOUND_PLACE_ERROR] + work.bounds[b, BOUND_ANGLE_ERROR] * reach
+            work.room[i] = (
+                0.5 * bend * half * half + error + 2.0 * ROUNDING * (scene[SCALE] + speed)
+            )
             _extrapolate(work.frames, b, work.placed, i, half, work.before, work.after)

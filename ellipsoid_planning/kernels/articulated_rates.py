@@ -28,11 +28,17 @@ HELD_ROTATION = 6e-5
 _UNIT = 5e-10
 # From this turn on rounding may decide which way OMPL turns.
 _HALF_TURN = math.pi - 1e-8
-# Columns of the bounds on a body's motion: angular rate (signed in the plane), and the speed of its
-# frame's origin.
+# Squares of quaternions that differ from 1 by more are no state of OMPL's.
+_MOST_UNEVEN = 2e-9
+# A joint's value start + s·rate takes three roundings here, and as many in OMPL.
+_VALUE_ROUNDING = 4.0 * 2.220446049250313e-16
+# Columns of the bounds on a body's motion: angular rate (signed in the plane), the speed of its
+# frame's origin, and how far the rotation [rad] and the origin may be from where a row puts them.
 BOUND_SPIN = 0
 BOUND_SPEED = 1
-BOUNDS = 2
+BOUND_ANGLE_ERROR = 2
+BOUND_PLACE_ERROR = 3
+BOUNDS = 4
 # Columns of the bounds on a piece: angular rate and its change, what bends the ways of points of
 # the body by their distance from its origin, and that origin's acceleration.
 LOCAL_RATE = 0
@@ -43,8 +49,27 @@ LOCAL = 4
 
 
 @kernel
+def _unevenness(row, v):
+    """By how much the square of a quaternion differs from 1, as far as OMPL bears it; else 0.
+
+    Other quaternions stand for their rotations, whatever their length.
+    """
+    square = row[v] ** 2 + row[v + 1] ** 2 + row[v + 2] ** 2 + row[v + 3] ** 2
+    away = abs(square - 1.0)
+    return away if away <= _MOST_UNEVEN else 0.0
+
+
+@kernel
 def _rotation_rate(first, last, v, rates, at):
-    """Write the rotation vector between the quaternions at ``v`` to ``rates``: its angle."""
+    """Write the rotation vector between the quaternions at ``v`` to ``rates``: its angle.
+
+    In the fourth place it writes how far [rad] OMPL's rotation may be from this one at the same s.
+    OMPL interpolates quaternions as they are: if their squares differ from 1 by d₁ and d₂, it
+    is off by at most (d₁ + d₂)/2, most of it half-way through half a turn (d₂ ≠ d₁ shifts the
+    mixture's weights, d₁ + d₂ the angle that it takes for theirs). Twice that also covers the
+    rounding of d₁ and d₂.
+    """
+    rates[at + 3] = _unevenness(first, v) + _unevenness(last, v)
     x, y, z, w = product(
         last[v], last[v + 1], last[v + 2], last[v + 3],
         -first[v], -first[v + 1], -first[v + 2], first[v + 3],
@@ -82,7 +107,6 @@ def set_rates(scene, kinematics, first, last, rates):
     ties, small, unsure = 0, 0, 0
     for k in range(3):
         rates[k] = last[k] - first[k]
-    rates[6] = 0.0
     angle = _rotation_rate(first, last, 3, rates, 3)
     ties += norm(rates[3], rates[4], rates[5]) > _HALF_TURN
     if scene[DIMENSION] == 3.0 and 0.0 < angle < SMALL_ROTATION:
@@ -92,7 +116,6 @@ def set_rates(scene, kinematics, first, last, rates):
         v, kind = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND])
         if kind == BALL:
             angle = _rotation_rate(first, last, v, rates, v)
-            rates[v + 3] = 0.0
             ties += norm(rates[v], rates[v + 1], rates[v + 2]) > _HALF_TURN
             if 0.0 < angle < SMALL_ROTATION:
                 small += 1
@@ -164,29 +187,40 @@ def set_bounds(scene, kinematics, start, rates, with_base, bounds):
     other's frames turns at a rate of at most w = Σ|α_k|, in the plane w = Σα_k, and its second
     derivative is at most w². Without ``with_base`` the base is held, which changes nothing between
     the robot's own parts.
+
+    The scene's margin covers the rounding of values up to some turns. A joint far from 0 is off by
+    its value's own rounding (1e-10 rad at 1e6), which long levers make large: this and uneven
+    quaternions are summed up along the way, an angle's error moving all that hangs on it.
     """
     joints = joint_rows(kinematics)
     planar = scene[DIMENSION] == 2.0
-    spin, speed = 0.0, 0.0
+    spin, speed, angle_error = 0.0, 0.0, 0.0
     if with_base:
         spin = rates[5] if planar else norm(rates[3], rates[4], rates[5])
         speed = norm(rates[0], rates[1], rates[2])
+        angle_error = rates[6]
     bounds[0, BOUND_SPIN], bounds[0, BOUND_SPEED] = spin, speed
+    bounds[0, BOUND_ANGLE_ERROR], bounds[0, BOUND_PLACE_ERROR] = angle_error, 0.0
     for j in range(joints.shape[0]):
         p, b = int(joints[j, JOINT_PARENT]), j + 1
         v, kind, t = int(joints[j, JOINT_VALUE]), int(joints[j, JOINT_KIND]), JOINT_TRANSLATION
         spin = bounds[p, BOUND_SPIN]
         arm = norm(joints[j, t], joints[j, t + 1], joints[j, t + 2])
-        slide = 0.0
+        angle_error, place_error = bounds[p, BOUND_ANGLE_ERROR], bounds[p, BOUND_PLACE_ERROR]
+        slide, value_error = 0.0, _VALUE_ROUNDING * (abs(start[v]) + abs(rates[v]))
         if kind == PRISMATIC:
             slide = abs(rates[v])
             arm += max(abs(start[v]), abs(start[v] + rates[v]))
+            place_error += value_error
         bounds[b, BOUND_SPEED] = bounds[p, BOUND_SPEED] + abs(spin) * arm + slide
+        bounds[b, BOUND_PLACE_ERROR] = place_error + angle_error * arm
         if kind == BALL:
             spin += norm(rates[v], rates[v + 1], rates[v + 2])
+            angle_error += rates[v + 3]
         elif kind != PRISMATIC:
             spin += rates[v] if planar else abs(rates[v])
-        bounds[b, BOUND_SPIN] = spin
+            angle_error += value_error
+        bounds[b, BOUND_SPIN], bounds[b, BOUND_ANGLE_ERROR] = spin, angle_error
 
 
 @kernel

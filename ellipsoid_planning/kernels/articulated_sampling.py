@@ -66,7 +66,7 @@ def _draw_joint(joint, near, room, numbers, row):
         low, high = max(low, near[v] - reach), min(high, near[v] + reach)
     elif reach < math.pi:
         low, high = near[v] - reach, near[v] + reach
-    value = low + numbers[0] * (high - low)
+    value = min(low + numbers[0] * (high - low), high)  # rounding may go beyond
     if kind == CONTINUOUS and abs(value) > math.pi:
         value -= math.copysign(2.0 * math.pi, value)
     row[v] = value

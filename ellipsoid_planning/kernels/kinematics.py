@@ -180,8 +180,8 @@ def body_velocities(kinematics, rates, frames):
     """Write angular and linear velocities of all bodies whose frames are known.
 
     ``rates`` stand where a row's values do: the base's translation (3), the base's rotation vector
-    in the world (3), one place unused, then a number for each joint or, for a ball joint, its
-    rotation vector in the joint's frame. The linear velocity is that of the frame's origin.
+    in the world (3), one place for its error, then a number for each joint or, for a ball joint,
+    its rotation vector in the joint's frame. The linear velocity is that of the frame's origin.
     """
     joints = joint_rows(kinematics)
     for k in range(3):

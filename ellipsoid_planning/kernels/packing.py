@@ -27,6 +27,7 @@ from .layout import (
     PLACED_MATRIX,
     ROUNDING,
 )
+from .linear import norm
 from .molecule import FRAME, place_frames, pose_part
 from .separation import CONVERGE, DECIDE, separation
 
@@ -82,7 +83,8 @@ def copies_apart(bodies, i, j, same, operations, basis, inverse, reaches, requir
         d0 = inverse[0, 0] * x + inverse[0, 1] * y + inverse[0, 2] * z
         d1 = inverse[1, 0] * x + inverse[1, 1] * y + inverse[1, 2] * z
         d2 = inverse[2, 0] * x + inverse[2, 1] * y + inverse[2, 2] * z
-        # Fractional coordinates are rounded; widen by far more than that.
+        # Fractional coordinates are rounded; widen by far more than that (far from the cell by
+        # what is required beyond contact, see arrangements_free).
         w0, w1, w2 = (
             slack * reaches[0] + 1e-9,
             slack * reaches[1] + 1e-9,
@@ -147,10 +149,15 @@ def arrangements_free(
     pairs,
     crystal,
     required,
+    lever,
+    loss,
     configurations,
     free,
 ):
     """Write to ``free`` (m,) whether each arrangement (m, K) keeps all copies apart.
+
+    ``required`` covers rounding for parts within ``lever`` of the origin; for each length that one
+    is farther out, coordinates and the lattice vectors that take it back lose ``loss`` more.
 
     The molecule's arrays are as in kernels.molecule, ``shapes`` (P, BODY) its parts in their
     frames; ``pairs`` (P, P) says at [i, j], i < j, which parts of one molecule must keep apart.
@@ -167,14 +174,18 @@ def arrangements_free(
                 bodies[p] = shapes[p]
             else:
                 pose_body(frames, part_frames[p], shapes, p, bodies, p)
+        far = lever
+        for p in range(count):
+            far = max(far, norm(bodies[p, 0], bodies[p, 1], bodies[p, 2]))
+        wanted = required + loss * (far - lever)
         free[index] = True
         for j in range(count):
             for i in range(j + 1):
                 if not free[index]:
                     break
-                own = not pairs[i, j] or own_apart(bodies, i, j, required, copy)
+                own = not pairs[i, j] or own_apart(bodies, i, j, wanted, copy)
                 if not own or not copies_apart(
-                    bodies, i, j, i == j, operations, basis, inverse, reaches, required, copy
+                    bodies, i, j, i == j, operations, basis, inverse, reaches, wanted, copy
                 ):
                     free[index] = False
 

@@ -75,8 +75,10 @@ def table_scene(plan: TablePlan) -> Array | None:
     rows = shape.part_rows()
     try:
         bare = pack_parts(box, rows, shape.radius, plan.clearance)
-        # Forward kinematics rounds too; the look-up's own rounding is far less than this.
-        rounding = 4.0 * layout.TOLERANCE * float(bare[layout.SCALE])
+        # Forward kinematics rounds too, by some 10 units for each joint, which the robot's scale
+        # counts: 4e-12 of it is 500 times as much. The look-up takes five roundings of numbers of
+        # the table's size, and cells are widened by 1e-9 of themselves.
+        rounding = 4.0 * layout.TOLERANCE * max(float(bare[layout.SCALE]), plan.scale)
         inflated = plan.clearance + found.inflation + rounding
         return pack_parts(box, rows, shape.radius, inflated)
     except GeometryError:

@@ -139,8 +139,8 @@ def _table_plan(
     if np.all(low[:n] < high[:n]):
         low[n:], high[n:] = -1.0, 1.0
         resolution = resolution_of(shape, low, high, n, parameters)
-    required = cspace.clearance_required
-    return TablePlan(cspace.world, shape, required, safe_low, safe_high, resolution)
+    required, scale = cspace.clearance_required, float(cspace.scene[layout.SCALE])
+    return TablePlan(cspace.world, shape, required, scale, safe_low, safe_high, resolution)
 
 
 def _room(cspace: CSpace, shape: Shape) -> float:

@@ -29,6 +29,8 @@ class TablePlan:
         world: bodies that the link must keep clear of, and be inside of.
         shape: the link's.
         clearance: what the link keeps.
+        scale: what rounding is measured by (SCALE of kernels.layout), that of the whole robot:
+            the link's frame comes from its kinematics, whose levers may be far longer than it.
         safe_low, safe_high: (3,), a box such that the link is safe if its middle is outside.
         resolution: the grids; None where the link's middle cannot be in any place that matters.
     """
@@ -36,6 +38,7 @@ class TablePlan:
     world: World
     shape: Shape
     clearance: float
+    scale: float
     safe_low: Array
     safe_high: Array
     resolution: Resolution | None
@@ -45,7 +48,7 @@ class TablePlan:
         bodies = (*self.world.obstacles, *self.world.arenas)
         rows = [np.concatenate([b.centre, b.rotation.ravel(), b.semi_axes]) for b in bodies]
         counts = [len(self.world.obstacles), len(self.world.arenas), self.world.dimension]
-        numbers = [np.array([*counts, self.clearance, layout.BEND, TICKS]), *rows]
+        numbers = [np.array([*counts, self.clearance, self.scale, layout.BEND, TICKS]), *rows]
         numbers += [self.shape.numbers(), self.safe_low, self.safe_high]
         if self.resolution is not None:
             grid, lines = self.resolution.orientations, self.resolution.lines

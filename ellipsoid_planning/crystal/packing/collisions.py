@@ -104,6 +104,8 @@ def arrangements_free(model: PackingModel, configurations: Array) -> NDArray[np.
         pairs,
         model.crystal,
         model.required,
+        model.lever,
+        model.loss,
         np.ascontiguousarray(configurations),
         free,
     )

@@ -106,16 +106,36 @@ class PackingModel:
     @cached_property
     def required(self) -> float:
         """The gap [length] from which on bodies count as free: rounding, less the overlap."""
-        _, basis, _, reaches = self.crystal
+        _, basis, _, _ = self.crystal
         n = self.dimension
         edges = np.linalg.norm(basis[:n, :n], axis=0)
         size = edges.max() + sum(float(part.semi_axes.max()) for part in self.parts)
-        # Far from the origin, and in flat cells, whose lattice vectors nearly cancel, more is lost.
-        stretch = float(edges @ reaches[:n])
-        return float(layout.ROUNDING * (4.0 * size + stretch * self._lever)) - self.overlap
+        share = layout.ROUNDING * self._rounding_share
+        return float(share * 4.0 * size + self.loss * self.lever) - self.overlap
+
+    @cached_property
+    def loss(self) -> float:
+        """What rounding loses [length per length] of places far from the origin.
+
+        More so in flat cells, whose lattice vectors nearly cancel.
+        """
+        _, basis, _, reaches = self.crystal
+        n = self.dimension
+        stretch = float(np.linalg.norm(basis[:n, :n], axis=0) @ reaches[:n])
+        return layout.ROUNDING * self._rounding_share * stretch
 
     @property
-    def _lever(self) -> float:
+    def _rounding_share(self) -> float:
+        """By how much more the molecule's kinematics round than a single motion does.
+
+        A coordinate or fixed joint adds up to 10 units of rounding times what hangs on it: 3 for
+        each entry of two matrix products, and some for a turn; ROUNDING is 32 units.
+        """
+        robot = self.molecule.robot
+        return 1.0 + 0.3 * (len(self.molecule.coordinates) + len(robot.joints))
+
+    @cached_property
+    def lever(self) -> float:
         """How far [length] from the origin the parts' centres can come in the grid's ranges."""
         whole = self.molecule
         ends = [max(abs(r.lower), abs(r.upper)) for r in self.grid.ranges]

@@ -94,7 +94,7 @@ def signed_gaps(c: Array, a1: Array, a2: Array) -> tuple[Array, Array]:
     value, _, _ = _slope(c, a1, a2, u)
     for _ in range(25):
         before = value
-        u, value = _ascended(c, a1, a2, u, value)
+        u, value = ascended(c, a1, a2, u, value)
         if np.all(value <= before):
             break
     return value, u
@@ -113,7 +113,7 @@ def _slope(c: Array, a1: Array, a2: Array, u: Array) -> tuple[Array, Array, Arra
     return (gradient * u).sum(1), gradient, curvature
 
 
-def _ascended(c: Array, a1: Array, a2: Array, u: Array, value: Array) -> tuple[Array, Array]:
+def ascended(c: Array, a1: Array, a2: Array, u: Array, value: Array) -> tuple[Array, Array]:
     """One Newton step on the sphere, halved until it does not lose; else the step is dropped."""
     _, gradient, curvature = _slope(c, a1, a2, u)
     tangent = gradient - value[:, None] * u

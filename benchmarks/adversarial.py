@@ -11,21 +11,25 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import pkgutil
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 from ellipsoid_planning.scenario_yaml import scenario_text
+from tests import adversarial
 from tests.adversarial.outcome import Counterexample, Outcome
-
-# Modules with a table SEARCHES: name of a kind to what decides its case of a seed.
-_MODULES = ("tests.adversarial.rigid_search",)
 
 
 def searches(word: str = "") -> dict[str, Callable[[int], Outcome]]:
-    """All kinds of cases whose name contains the word."""
-    tables = [importlib.import_module(name).SEARCHES for name in _MODULES]
+    """All kinds of cases whose name contains the word.
+
+    They stand in the tables SEARCHES (kind: what decides its case of a seed) of tests/adversarial.
+    """
+    names = [m.name for m in pkgutil.iter_modules(adversarial.__path__, adversarial.__name__ + ".")]
+    found = [importlib.import_module(name) for name in names if name.endswith("_search")]
+    tables = [module.SEARCHES for module in found]
     return {name: search for table in tables for name, search in table.items() if word in name}
 
 

@@ -140,7 +140,7 @@ class ArticulatedCSpace(CSpace):
         if self.articulated.base != FIXED_BASE:
             contacts += bound_contacts(self.world, values[: self.dimension])
         contacts += limit_contacts(self.articulated, values)
-        contacts += placed_contacts(self.world, self.robot, self.scene, placed, values)
+        contacts += placed_contacts(self.world, self.robot, self.scene, placed)
         contacts += self_contacts(self.articulated, self.scene, self.kinematics, frames, placed)
         return tuple(contacts)
 

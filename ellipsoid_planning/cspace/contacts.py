@@ -49,23 +49,21 @@ def bound_contacts(world: World, position: Array) -> list[Contact]:
     return contacts
 
 
-def body_contacts(
-    world: World, robot: RigidRobot, scene: Array, pose: Array, configuration: Array
-) -> list[Contact]:
+def body_contacts(world: World, robot: RigidRobot, scene: Array, pose: Array) -> list[Contact]:
     """Parts that meet an obstacle, leave an arena, or come closer than the clearance."""
     placed = np.empty((len(robot.parts), layout.PLACED))
     placement.place(scene, *pose, placed)
-    return placed_contacts(world, robot, scene, placed, configuration)
+    return placed_contacts(world, robot, scene, placed)
 
 
-def placed_contacts(
-    world: World, robot: Robot, scene: Array, placed: Array, configuration: Array
-) -> list[Contact]:
+def placed_contacts(world: World, robot: Robot, scene: Array, placed: Array) -> list[Contact]:
     """:func:`body_contacts` of parts that are placed already, rows (k, PLACED)."""
     gaps = np.empty((len(robot.parts), len(world.obstacles)))
     validity.obstacle_gaps(scene, placed, gaps)
     inside = np.empty((len(robot.parts), len(world.arenas)), dtype=np.bool_)
     validity.in_arenas(scene, placed, inside)
+    rooms = np.empty(inside.shape)
+    validity.arena_gaps(scene, placed, rooms)
     clearance = float(scene[layout.CLEARANCE])
     required = clearance + layout.ROUNDING * float(scene[layout.SCALE])
     contacts = []
@@ -77,16 +75,8 @@ def placed_contacts(
             contacts.append(Contact("obstacle", part.name, body.name, float(missing), text))
         for a in np.flatnonzero(~inside[i]):
             arena = world.arenas[a]
-            missing = _sticks_out(world, robot, configuration, i, int(a)) + clearance
-            text = f"part {part.name!r} leaves arena {arena.name!r} (by {missing:.6g})"
+            missing = max(required - rooms[i, a], 0.0)
+            verb = "leaves" if rooms[i, a] < 0.0 else f"is closer than {clearance:g} to the wall of"
+            text = f"part {part.name!r} {verb} arena {arena.name!r} (by {missing:.6g})"
             contacts.append(Contact("arena", part.name, arena.name, float(missing), text))
     return contacts
-
-
-def _sticks_out(world: World, robot: Robot, configuration: Array, part: int, arena: int) -> float:
-    """Largest u·x of the part beyond the arena's support, over outward normals u (sampled)."""
-    body, outer = robot.bodies_at(configuration)[part], world.arenas[arena]
-    normals = outer.surface_points(2000) - outer.centre
-    normals = normals @ np.linalg.inv(outer.shape_matrix)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return float(np.max(body.support(normals) - outer.support(normals)))

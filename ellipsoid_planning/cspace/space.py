@@ -141,7 +141,7 @@ class CSpace:
         values = np.asarray(configuration, dtype=float)
         pose = self.poses(values)[0]
         contacts = bound_contacts(self.world, values[: self.dimension])
-        contacts += body_contacts(self.world, self.robot, self.scene, pose, values)
+        contacts += body_contacts(self.world, self.robot, self.scene, pose)
         return tuple(contacts)
 
     def is_motion_valid(self, first: ArrayLike, second: ArrayLike) -> bool:

@@ -13,12 +13,14 @@ Perram and Wertheim (1985) gave the function of λ; its second derivative serves
 
 import math
 
+from .closest_points import closest_direction, difference_point
 from .compile import kernel
 from .layout import BODY_CENTRE, BODY_INVERSE, BODY_MATRIX, PLACED_CENTRE, PLACED_MATRIX
 from .linear import gram, norm, shape_matrix, solve_positive, times, transposed_times
 
 _STEPS = 40
 _POLISH_STEPS = 30
+_AGREEMENT = 1e-9  # share of the distance to which its bounds are brought together
 DECIDE = 0  # stop as soon as the gap exceeds what is required
 AIM = 1  # go on until the direction is good for its neighbourhood too
 CONVERGE = 2  # the distance itself
@@ -128,6 +130,18 @@ def separation(bodies, j, placed, i, lam, required, mode):
     if meet and mode != CONVERGE:
         return best, ux, uy, uz, lam
     best, ux, uy, uz = polish(bodies, j, placed, i, ux, uy, uz, required, mode)
+    if best > required and mode != CONVERGE:
+        return best, ux, uy, uz, lam
+    vx, vy, vz = difference_point(bodies, j, placed, i, ux, uy, uz)
+    most = norm(vx, vy, vz)
+    # |c − s(u)| bounds the distance from above: the search goes on only where it could be larger
+    # than what is known, and than what is asked for.
+    if (most <= required and mode != CONVERGE) or (best > 0.0 and most - best <= _AGREEMENT * most):
+        return best, ux, uy, uz, lam
+    vx, vy, vz = closest_direction(bodies, j, placed, i, ux, uy, uz)
+    value, vx, vy, vz = polish(bodies, j, placed, i, vx, vy, vz, required, mode)
+    if value > best:
+        best, ux, uy, uz = value, vx, vy, vz
     return best, ux, uy, uz, lam
 
 

@@ -5,6 +5,7 @@ import math
 from .broad_phase import near_obstacle, next_overlap
 from .compile import inlined, kernel
 from .containment import GROW_PART, SHRINK_ARENA, arena_extent
+from .depths import depth_outside, least_depth
 from .layout import (
     BODY_CENTRE,
     BODY_RADIUS,
@@ -139,22 +140,14 @@ def are_free(scene, poses, out):
 
 
 @kernel
-def obstacle_gaps(scene, placed, out):
-    """Converged gaps, shape (k, m), of every part and obstacle; negative where they meet."""
-    obstacles, parts = obstacle_rows(scene), part_rows(scene)
-    for i in range(placed.shape[0]):
-        for j in range(obstacles.shape[0]):
-            start = obstacles[j, BODY_RADIUS]
-            lam = start / (start + parts[i, PART_RADIUS])
-            out[i, j] = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)[0]
-
-
-@kernel
 def _arena_gap(arenas, a, placed, i, scene):
-    """Lower bound of the distance of part ``i`` from the boundary of arena ``a``; −1 if outside."""
+    """Lower bound of the distance of part ``i`` from the wall of arena ``a``.
+
+    Minus how far it sticks out where it is not inside.
+    """
     planar, scale = scene[DIMENSION] == 2.0, scene[SCALE]
     if arena_extent(arenas, a, placed, i, scale, 0.0, planar, GROW_PART, True) > 1.0:
-        return -1.0
+        return min(-depth_outside(arenas, a, placed, i, planar), 0.0)
     low, high = 0.0, arenas[a, BODY_RADIUS]
     while high - low > 1e-6 * high + ROUNDING * scale:
         middle = 0.5 * (low + high)
@@ -166,19 +159,46 @@ def _arena_gap(arenas, a, placed, i, scene):
 
 
 @kernel
-def _obstacle_gap(obstacles, j, parts, placed, i, scene):
-    """Lower bound of the distance of part ``i`` and obstacle ``j``."""
+def _signed_gap(obstacles, j, parts, placed, i, scene):
+    """Converged distance of part ``i`` and obstacle ``j``, minus the depth where they meet."""
     lam = obstacles[j, BODY_RADIUS] / (obstacles[j, BODY_RADIUS] + parts[i, PART_RADIUS])
-    value = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)[0]
-    return value - ROUNDING * scene[SCALE]
+    value, ux, uy, uz, _ = separation(obstacles, j, placed, i, lam, math.inf, CONVERGE)
+    if value <= 0.0:
+        planar = scene[DIMENSION] == 2.0
+        value = max(value, least_depth(obstacles, j, placed, i, ux, uy, uz, planar))
+    return value
+
+
+@kernel
+def _obstacle_gap(obstacles, j, parts, placed, i, scene):
+    """Lower bound of the signed distance of part ``i`` and obstacle ``j``."""
+    return _signed_gap(obstacles, j, parts, placed, i, scene) - ROUNDING * scene[SCALE]
+
+
+@kernel
+def obstacle_gaps(scene, placed, out):
+    """Converged gaps, shape (k, m), of every part and obstacle; minus the depth where they meet."""
+    obstacles, parts = obstacle_rows(scene), part_rows(scene)
+    for i in range(placed.shape[0]):
+        for j in range(obstacles.shape[0]):
+            out[i, j] = _signed_gap(obstacles, j, parts, placed, i, scene)
+
+
+@kernel
+def arena_gaps(scene, placed, out):
+    """Distances (k, a) of every part from every arena's wall; minus what sticks out."""
+    arenas = arena_rows(scene)
+    for i in range(placed.shape[0]):
+        for a in range(arenas.shape[0]):
+            out[i, a] = _arena_gap(arenas, a, placed, i, scene)
 
 
 @kernel
 def clearance_of(scene, x, y, z, qx, qy, qz, qw):
-    """Lower bound of the distance to obstacles and arena boundaries; negative where they meet.
+    """Signed clearance: a lower bound of the distance to obstacles and arenas' walls.
 
-    Infinite in an empty world. A negative value is minus the penetration along one direction, or
-    −1 outside an arena.
+    Infinite in an empty world. Where the robot meets something, minus the deepest penetration of a
+    pair of bodies, each the shallowest that was found, or minus how far it sticks out of an arena.
     """
     placed = new_placed(scene)
     place(scene, x, y, z, qx, qy, qz, qw, placed)

@@ -210,7 +210,7 @@ def _normal(rng: Rng, scene: _Scene, aim: Aim, graze: bool) -> Array:
     return u
 
 
-def _against_world(rng: Rng, scene: _Scene, aim: Aim, build: Ellipsoid) -> Callable[[float], Any]:
+def _against_world(scene: _Scene, aim: Aim, build: Ellipsoid) -> Callable[[float], Any]:
     point, _ = _contact(scene, scene.normal, aim)
     u, matrix = scene.normal, build.matrix
     reach = matrix @ (matrix.T @ u) / np.linalg.norm(matrix.T @ u)
@@ -288,7 +288,7 @@ def draw(rng: Rng, kind: str, twist: str, n: int, graze: bool, hair: float) -> C
         extent = size * 10.0 ** rng.uniform(-2, 0.3)
         if kind == "arena":
             extent = scene.robot.reach * rng.uniform(3.0, 6.0) + 15.0 * size
-        build = _against_world(rng, scene, aim, _arena_or_body(rng, n, kind, extent))
+        build = _against_world(scene, aim, _arena_or_body(rng, n, kind, extent))
     return _settled(build, scene, (kind, twist, n, graze), hair)
 
 
@@ -330,7 +330,7 @@ def _settled(build: Any, scene: _Scene, label: Any, hair: float) -> Case | None:
             break
     world, robot, aim = build(t)
     space = ArticulatedCSpace(world, robot, aim.clearance)
-    truth = judge.least(robot, aim, *ends)
+    truth = min(judge.least(robot, aim, *ends), found(t))
     if label[1] in ("tiny", "half"):  # then it matters which end is the first
         truth = min(truth, judge.least(robot, aim, *ends[::-1]))
     return Case("-".join(map(str, label)), space, aim, *ends, truth, unit)

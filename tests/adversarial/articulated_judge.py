@@ -66,12 +66,12 @@ def configurations(robot: Any, first: Array, second: Array, s: Array) -> Array:
 # --------------------------------------------------------------------------- the robot
 
 
-def _turns(angles: Array) -> Array:
+def turns(angles: Array) -> Array:
     c, s = np.cos(angles), np.sin(angles)
     return np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
 
 
-def _about(axis: Array, angles: Array) -> Array:
+def about(axis: Array, angles: Array) -> Array:
     """Rotations (m, 3, 3) about an axis."""
     x, y, z = Long(1) * axis / np.sqrt((Long(1) * axis) @ (Long(1) * axis))
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], dtype=Long)
@@ -79,7 +79,7 @@ def _about(axis: Array, angles: Array) -> Array:
     return np.eye(3) + np.sin(angles)[:, None, None] * cross + 2 * half**2 * (cross @ cross)
 
 
-def _rotations(q: Array) -> Array:
+def rotations(q: Array) -> Array:
     """Rotations (m, 3, 3) of quaternions (m, 4) of any length."""
     x, y, z, w = (q / np.sqrt((q * q).sum(1, keepdims=True))).T
     cross = np.zeros((len(q), 3, 3), dtype=Long)
@@ -94,9 +94,9 @@ def _base(robot: Any, q: Array) -> Frames:
     if robot.base != "free":
         turn = Long(1) * robot.orientation[None]
     elif n == 2:
-        turn = _turns(q[:, 2])
+        turn = turns(q[:, 2])
     else:
-        turn = _rotations(q[:, 3:7])
+        turn = rotations(q[:, 3:7])
     if robot.base == "fixed":
         at = Long(1) * robot.position[None]
     return np.broadcast_to(turn, (len(q), n, n)), np.broadcast_to(at, (len(q), n))
@@ -120,11 +120,11 @@ def frames(robot: Any, q: Array) -> dict[str, Frames]:
         if joint.type == "prismatic":
             return turn, at + value * (turn @ (Long(1) * joint.axis))
         if joint.type == "ball":
-            return turn @ _rotations(value), at
+            return turn @ rotations(value), at
         if joint.type == "fixed":
             return turn, at
         planar = len(joint.position) == 2
-        return turn @ (_turns(value[:, 0]) if planar else _about(joint.axis, value[:, 0])), at
+        return turn @ (turns(value[:, 0]) if planar else about(joint.axis, value[:, 0])), at
 
     return {link.name: place(link.name) for link in robot.links}
 
@@ -152,7 +152,7 @@ def separations(c: Array, first: Array, second: Array, exact: bool = True) -> Ar
     Unless ``exact`` they are lower bounds, good enough to see where a motion comes close.
     """
     bodies = c.astype(float), first.astype(float), second.astype(float)
-    _, u = oracles.combinations(*bodies, 24 if exact else 14)
+    _, u = oracles.combinations(*bodies, 24 if exact else 20)
     u = u / np.maximum(np.linalg.norm(u, axis=1), 1e-300)[:, None]
     value = (u * bodies[0]).sum(1)
     for a in bodies[1:]:
@@ -167,7 +167,7 @@ def separations(c: Array, first: Array, second: Array, exact: bool = True) -> Ar
     return (u * c).sum(1) - reach[0] - reach[1]
 
 
-def _inverse(matrix: Array) -> Array:
+def inverse_of(matrix: Array) -> Array:
     """By Newton's steps from the one in double precision."""
     found = Long(1) * np.linalg.inv(np.asarray(matrix, dtype=float))
     for _ in range(3):
@@ -180,7 +180,7 @@ def rooms(c: Array, part: Array, arena: Array, clearance: float = 0.0) -> Array:
 
     Ascent from several points p = c + Mz + rw of the part: z and w go along the gradient.
     """
-    inverse = _inverse(arena)
+    inverse = inverse_of(arena)
     at = c @ inverse.T
     blocks = [inverse @ part]
     if clearance > 0.0:

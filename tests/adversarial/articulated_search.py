@@ -1,4 +1,4 @@
-"""Motions of articulated robots that are aimed at cancellation, decided by kernels and the judge."""
+"""Motions of articulated robots, aimed at cancellation, decided by kernels and the judge."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.adversarial.articulated_judge import Long, _about, _inverse, _turns, separations
+from tests.adversarial.articulated_judge import Long, about, inverse_of, separations, turns
 
 Array = Any
 
@@ -28,9 +28,9 @@ def placed(model: Any, configuration: Any) -> tuple[Array, Array]:
             along = basis[:, "xyz".index(coordinate.name)]
             at = at + angle[0] * along / np.sqrt(along @ along)
         elif n == 2:
-            turn = turn @ _turns(angle)[0]
+            turn = turn @ turns(angle)[0]
         else:
-            turn = turn @ _about(np.eye(3)["XYZ".index(next(axes))], angle)[0]
+            turn = turn @ about(np.eye(3)["XYZ".index(next(axes))], angle)[0]
     return at + turn @ (Long(1) * part.centre), turn @ (Long(1) * part.matrix)
 
 
@@ -38,7 +38,7 @@ def least_gap(model: Any, configuration: Any) -> Array:
     """The least signed gap to any copy, the body itself aside, up to 0.4 of its size."""
     c, m = placed(model, configuration)
     basis, n = Long(1) * model.cell.basis, model.dimension
-    inverse = _inverse(model.cell.basis)
+    inverse = inverse_of(model.cell.basis)
     radius = 2 * float(np.linalg.norm(m.astype(float), 2))
     reach = np.ceil(radius * np.linalg.norm(inverse.astype(float), axis=1)).astype(int) + 1
     steps = np.array(list(itertools.product(*[range(-k, k + 1) for k in reach])))

@@ -7,6 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
+from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.scenario import Scenario
+from ellipsoid_planning.world import World
 from tests.adversarial import packing_judge as judge
 from tests.adversarial.outcome import Counterexample, Outcome
 from tests.crystal.packings import model_from, one_body_text
@@ -88,10 +92,27 @@ def search(n: int, far: bool, seed: int, count: int = 6) -> Outcome:
 
 def _outcome(text: str, model: Any, arrangement: Any) -> Outcome:
     free, gap = model.is_free(arrangement), float(judge.least_gap(model, arrangement))
-    what = f"gap {gap:.3g} at {arrangement.tolist()} of\n{text}"
-    wrong = (Counterexample(what, None),)  # type: ignore[arg-type]
-    refused = not free and gap > 0.5 * TOLERANCE
-    return Outcome(1, int(free), wrong if free and gap < 0 else (), wrong if refused else ())
+    false, refused = free and gap < 0, not free and gap > 0.5 * TOLERANCE
+    if not (false or refused):
+        return Outcome(1, int(free))
+    what = f"gap {gap:.3g} but free is {free} at {arrangement.tolist()} of {text!r}"
+    wrong = (Counterexample(what, _as_world(model, arrangement)),)
+    return Outcome(1, int(free), wrong if false else (), wrong if refused else ())
+
+
+def _as_world(model: Any, arrangement: Any) -> Scenario:
+    """The body as a robot at the origin, and its closest copies as obstacles."""
+    n = model.dimension
+    (body,), away = model.molecule.bodies(arrangement), []
+    for turn, shift in zip(*model.group.cartesian(model.cell), strict=True):
+        centre = turn @ body.centre + shift - body.centre
+        for lattice in model.cell.lattice_within(centre, 2.1 * float(body.semi_axes.max())):
+            at = centre + model.cell.cartesian(lattice)
+            if np.linalg.norm(at) > 1e-9:
+                away.append(Ellipsoid(at, turn @ body.rotation, body.semi_axes))
+    robot = RigidRobot((Ellipsoid(np.zeros(n), body.rotation, body.semi_axes),), False)
+    box = np.full(n, float(model.cell.lengths.max()))
+    return Scenario("arrangement", World(-box, box, tuple(away)), robot, np.zeros(n), np.zeros(n))
 
 
 SEARCHES: dict[str, Callable[[int], Outcome]] = {

@@ -12,7 +12,6 @@ from ompl import base as ob
 
 from benchmarks import safety_loops
 from benchmarks.safety_scenes import configurations, maze, scene, snake
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import articulated_validity, safety_table
 from ellipsoid_planning.safety import SafetyReport, TabulatedSafety
@@ -96,7 +95,7 @@ def growth(links: int) -> dict[str, float]:
     """
     side = 4.0 * links
     world = maze(4 * links, side)
-    cspace = cspace_of(world, snake(links, bend=0.15))
+    cspace = CSpace(world, snake(links, bend=0.15))
     rows = configurations(cspace, _GROWTH_STATES)
     packed, out = cspace.poses(rows), np.empty(len(rows), dtype=np.bool_)
     arguments = (cspace.scene, cspace.kinematics, packed, out)

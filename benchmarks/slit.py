@@ -17,7 +17,6 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.outcome import SOLVED
@@ -77,7 +76,7 @@ def _turn(random: np.random.Generator, most: float) -> list[float]:
 
 def times(links: int, play: float, queries: int) -> tuple[list[float], int]:
     """Seconds of each query, and how many were solved with a path that is proved."""
-    cspace, random = cspace_of(slit(play, 2.1 * links), chain(links)), np.random.default_rng(1)
+    cspace, random = CSpace(slit(play, 2.1 * links), chain(links)), np.random.default_rng(1)
     starts, goals = (ends(cspace, random, side, queries) for side in (-1.0, 1.0))
     taken, solved = [], 0
     for start, goal in zip(starts, goals, strict=True):
@@ -100,7 +99,7 @@ def main() -> None:
     parser.add_argument("--plays", type=float, nargs="+", default=list(PLAYS))
     given = parser.parse_args()
     world = slit(0.1, 2.1 * given.links)
-    HighwayRoadmap(cspace_of(world, chain(given.links))).compile_kernels()
+    HighwayRoadmap(CSpace(world, chain(given.links))).compile_kernels()
     print("| play | solved | median | slowest |\n| ---: | ---: | ---: | ---: |")
     for play in given.plays:
         taken, solved = times(given.links, play, given.queries)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.configurations import checked_configurations
 from ellipsoid_planning.robots.joint import BALL, CONTINUOUS, Joint
 from ellipsoid_planning.robots.reach import robot_reach
 from ellipsoid_planning.robots.robot import Robot
@@ -25,8 +26,12 @@ SAME_QUATERNION = 1e-9
 
 
 def path_length(robot: Robot, configurations: ArrayLike) -> float:
-    """Return the sum of OMPL's distances along a path of configurations (m, d)."""
-    path = np.asarray(configurations, dtype=float)
+    """Return the sum of OMPL's distances along a path of configurations (m, d).
+
+    Raises:
+        GeometryError: if they are no configurations of finite numbers.
+    """
+    path = checked_configurations(configurations, robot.configuration_size)
     distances = _steps(robot, path) + _turns(robot, path)
     if isinstance(robot, ArticulatedRobot):
         for joint, weight in zip(robot.moving_joints, robot.joint_weights, strict=True):
@@ -35,8 +40,13 @@ def path_length(robot: Robot, configurations: ArrayLike) -> float:
 
 
 def base_travel(robot: Robot, configurations: ArrayLike) -> float:
-    """Return how far the robot's base travels along a path of configurations (m, d)."""
-    return float(np.sum(_steps(robot, np.asarray(configurations, dtype=float))))
+    """Return how far the robot's base travels along a path of configurations (m, d).
+
+    Raises:
+        GeometryError: if they are no configurations of finite numbers.
+    """
+    path = checked_configurations(configurations, robot.configuration_size)
+    return float(np.sum(_steps(robot, path)))
 
 
 def _steps(robot: Robot, path: Array) -> Array:

@@ -98,9 +98,9 @@ class Scenario:
 
     def cspace(self) -> CSpace:
         """Return the configuration space of the robot in the world, with the clearance."""
-        from ellipsoid_planning.cspace.of import cspace_of
+        from ellipsoid_planning.cspace.space import CSpace
 
-        return cspace_of(self.world, self.robot, self.clearance)
+        return CSpace(self.world, self.robot, self.clearance)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the scenario in the file format, complete, as data for JSON or YAML.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ellipsoid_planning.errors import GeometryError, RobotError
 from ellipsoid_planning.geometry.orientation import normalised_heading
 from ellipsoid_planning.orientation_forms import unit_quaternion
+from ellipsoid_planning.robots.configurations import Array, checked_configuration
 from ellipsoid_planning.robots.coordinates import headings, quaternions
 from ellipsoid_planning.robots.joint import LIMITED, REVOLUTE
 from ellipsoid_planning.robots.robot import Robot
@@ -23,7 +23,7 @@ LIMIT_ROUNDING = 1e-9
 
 def normalised_configuration(
     robot: Robot, configuration: ArrayLike, which: str, origin: Origin
-) -> NDArray[np.float64]:
+) -> Array:
     """Return a configuration (d,) with what is equivalent made one.
 
     Args:
@@ -36,11 +36,10 @@ def normalised_configuration(
         ScenarioError: if the size is another, a quaternion far from unit length, or a joint's
             value out of its limits; if two joints' values would have one key in a file.
     """
-    values = np.array(configuration, dtype=float)
-    size = robot.configuration_size
-    if values.shape != (size,) or not np.all(np.isfinite(values)):
-        problem = f"expected a configuration of {size} finite numbers, got {values.tolist()}"
-        raise origin.error((which,), problem)
+    try:
+        values = checked_configuration(configuration, robot.configuration_size)
+    except GeometryError as error:
+        raise origin.error((which,), str(error)) from None
     base = 0 if robot.base_size == 0 else robot.dimension
     try:
         check_coordinates(values[:base], "position")
@@ -57,7 +56,7 @@ def normalised_configuration(
     return values
 
 
-def _keep_limits(robot: Robot, values: NDArray[np.float64], which: str, origin: Origin) -> None:
+def _keep_limits(robot: Robot, values: Array, which: str, origin: Origin) -> None:
     try:
         keyed = keyed_joints(robot)
     except RobotError as error:

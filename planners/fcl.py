@@ -11,13 +11,13 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import fcl
 import numpy as np
 from numpy.typing import NDArray
 from ompl import base as ob
 
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels.kinematics import pair_matrix
@@ -27,9 +27,6 @@ from .articulated_states import articulated_reader
 from .placing import PartPlaces, homogeneous
 from .spaces import check_space, is_articulated, state_access
 from .validity import state_check
-
-if TYPE_CHECKING:
-    from ellipsoid_planning.cspace.space import CSpace
 
 RESOLUTION = 0.01
 """OMPL's default distance of checked states along a motion, as a fraction of the space's extent."""
@@ -189,7 +186,7 @@ def _enclosure(cspace: CSpace) -> CSpace:
     if is_articulated(cspace):
         links = [link.name for link in cspace.robot.links]
         robot = replace(cspace.robot, ignored=frozenset(map(frozenset, combinations(links, 2))))
-    return type(cspace)(empty, robot, cspace.clearance_required)
+    return CSpace(empty, robot, cspace.clearance_required)
 
 
 def _scaled(body: Ellipsoid, scale: float) -> Ellipsoid:

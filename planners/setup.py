@@ -12,7 +12,7 @@ from ellipsoid_planning.errors import PlannerError
 from .bindings import set_seed
 from .motion import CertifiedMotionValidator
 from .sampler import install_free_interval_sampler
-from .spaces import check_space, state_space, write_configuration
+from .spaces import check_cspace, check_space, state_space, write_configuration
 from .validity import EllipsoidValidityChecker, TabulatedValidityChecker
 
 if TYPE_CHECKING:
@@ -46,9 +46,11 @@ def install(
             narrow places.
 
     Raises:
-        PlannerError: unknown checker, bad resolution, or a space that does not fit ``cspace``.
+        PlannerError: unknown checker, bad resolution, a space that does not fit ``cspace``, or
+            a ``cspace`` that is none.
         TableError: a table cannot be made, kept, or read.
     """
+    check_cspace(cspace)
     if checker in PLUGIN_CHECKERS:
         if resolution is not None:
             raise PlannerError("resolution: certified motions have none; use it with checker 'fcl'")
@@ -94,8 +96,11 @@ def simple_setup(
         cspace: of the scenario, if it exists already.
 
     Raises:
-        PlannerError: see `install` and `planners.bindings.set_seed`.
+        PlannerError: see `install` and `planners.bindings.set_seed`; also for the C-space of
+            another world, robot or clearance than the scenario's.
     """
+    if cspace is not None:
+        check_cspace(cspace, scenario)
     if seed is not None:
         set_seed(seed)
     cspace = scenario.cspace() if cspace is None else cspace

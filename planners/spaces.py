@@ -17,14 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 from ompl import base as ob
 
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
+from ellipsoid_planning.robots.configurations import checked_configuration
 
 from .compound import check_compound, compound_access, compound_space
 
 if TYPE_CHECKING:
     from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
-    from ellipsoid_planning.cspace.space import CSpace
+    from ellipsoid_planning.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,28 @@ def _bounds(cspace: CSpace) -> ob.RealVectorBounds:
     return bounds
 
 
+def check_cspace(cspace: CSpace, scenario: Scenario | None = None) -> None:
+    """Refuse what is no C-space, or not the one of ``scenario``.
+
+    Raises:
+        PlannerError: it is none, or that of another world, robot or clearance.
+    """
+    if not isinstance(cspace, CSpace):
+        raise PlannerError(
+            f"cspace: expected a CSpace, got {type(cspace).__name__}; make one with "
+            "CSpace(world, robot) or scenario.cspace()"
+        )
+    if scenario is not None and not (
+        cspace.world is scenario.world
+        and cspace.robot is scenario.robot
+        and cspace.clearance_required == scenario.clearance
+    ):
+        raise PlannerError(
+            f"cspace: expected that of scenario {scenario.name!r}, got another world's, robot's "
+            "or clearance's; make it with scenario.cspace()"
+        )
+
+
 def check_space(space: ob.StateSpace, cspace: CSpace) -> None:
     """Refuse a state space whose states or motions are not those that ``cspace`` speaks of.
 
@@ -168,8 +192,13 @@ def check_space(space: ob.StateSpace, cspace: CSpace) -> None:
 def write_configuration(
     state: ob.State, configuration: NDArray[np.float64], cspace: CSpace
 ) -> None:
-    """Set ``state`` to ``configuration`` (d,)."""
-    state_access(cspace).write(state, np.asarray(configuration, dtype=np.float64).tolist())
+    """Set ``state`` to ``configuration`` (d,).
+
+    Raises:
+        GeometryError: if it is no single configuration of finite numbers.
+    """
+    access = state_access(cspace)
+    access.write(state, checked_configuration(configuration, access.size).tolist())
 
 
 def read_configuration(state: ob.State, cspace: CSpace) -> NDArray[np.float64]:

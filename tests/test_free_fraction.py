@@ -7,7 +7,6 @@ import pytest
 
 from ellipsoid_planning.cspace.free_fraction import Budget, free_fraction, layer_fraction
 from ellipsoid_planning.cspace.layer_sequence import whole_measure
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry import Ellipsoid
@@ -133,7 +132,7 @@ ARTICULATED = {
 @pytest.mark.statistical
 def test_articulated_robots(case):
     robot, world = ARTICULATED[case]
-    cspace = cspace_of(world, robot)
+    cspace = CSpace(world, robot)
     found = free_fraction(cspace, 1, FEW)
     assert 0.0 < found.fraction.value < 1.0
     assert agrees(found.fraction, cspace)
@@ -236,7 +235,7 @@ def test_layers_add_up_to_the_whole():
 @pytest.mark.parametrize("case", ["free snake", "chain"])
 def test_a_layer_of_joints(case):
     robot, world = ARTICULATED[case]
-    cspace = cspace_of(world, robot)
+    cspace = CSpace(world, robot)
     straight = np.zeros(robot.configuration_size)
     if case == "chain":
         straight[6::4] = 1.0
@@ -252,11 +251,11 @@ def test_a_layer_of_joints(case):
 def test_a_layer_that_collides_with_itself_is_not_free():
     robot, world = ARTICULATED["free snake"]
     rolled = np.array([0.0, 0.0, 0.0, 2.3, 2.3, 2.3])
-    found = layer_fraction(cspace_of(world, robot), rolled, 1, FEW)
+    found = layer_fraction(CSpace(world, robot), rolled, 1, FEW)
     assert found.fraction.value == 0.0
 
 
 def test_a_fixed_base_has_no_layers():
     robot, world = ARTICULATED["fixed snake"]
     with pytest.raises(GeometryError, match="no layers"):
-        layer_fraction(cspace_of(world, robot), np.zeros(3))
+        layer_fraction(CSpace(world, robot), np.zeros(3))

@@ -31,7 +31,7 @@ from ellipsoid_planning.kernels import (
     layout,
 )
 from ellipsoid_planning.kernels.robot_model import new_articulated_model
-from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
+from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot, check_articulated
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ _CLEARANCE_SAMPLES = 33
 _CLEARANCE_PROOFS = 40
 
 
-class ArticulatedCSpace(CSpace):
+class ArticulatedCSpace(CSpace, robots=ArticulatedRobot):
     """An articulated robot's configurations in a world, with proofs of what is free.
 
     Valid means: the base in its bounds, every joint in its limits, every part clear of obstacles
@@ -65,9 +65,10 @@ class ArticulatedCSpace(CSpace):
         """Characterise the C-space.
 
         Raises:
-            GeometryError: if the dimensions differ or the clearance is negative, not finite, or
-                leaves nothing of an arena.
+            GeometryError: if the robot is rigid, the dimensions differ, or the clearance is
+                negative, not finite, or leaves nothing of an arena.
         """
+        check_articulated(robot)
         check_clearance(world, robot, clearance)
         self.world, self.articulated = world, robot
         self.robot: Any = robot  # the base class knows rigid ones
@@ -101,7 +102,7 @@ class ArticulatedCSpace(CSpace):
 
     def is_valid(self, configuration: ArrayLike) -> bool:
         """Whether a configuration (d,) is provably free, in bounds, limits and at the clearance."""
-        return bool(self.are_valid(configuration)[0])
+        return bool(self.are_valid(self._one(configuration))[0])
 
     def are_valid(self, configurations: ArrayLike) -> NDArray[np.bool_]:
         """:meth:`is_valid` of every row of ``configurations`` (m, d), shape (m,)."""
@@ -116,13 +117,13 @@ class ArticulatedCSpace(CSpace):
         Negative where they meet: minus the penetration along one direction, or −1 outside an
         arena. Infinite in an empty world. The robot's parts against each other do not count.
         """
-        row = self.poses(configuration)[0]
+        row = self.pose(configuration)
         value = articulated_validity.articulated_clearance(self.scene, self.kinematics, row)
         return float(value)
 
     def placed(self, configuration: ArrayLike) -> Array:
         """The parts placed at a configuration (d,), rows (P, PLACED) of kernels.layout."""
-        return self._placed(self.poses(configuration)[0])[1]
+        return self._placed(self.pose(configuration))[1]
 
     def _placed(self, row: Array) -> tuple[Array, Array]:
         frames = kinematics.new_frames(self.kinematics)
@@ -135,7 +136,7 @@ class ArticulatedCSpace(CSpace):
         if self.is_valid(configuration):
             return ()
         values = np.asarray(configuration, dtype=float)
-        frames, placed = self._placed(self.poses(values)[0])
+        frames, placed = self._placed(self.pose(values))
         contacts = []
         if self.articulated.base != FIXED_BASE:
             contacts += bound_contacts(self.world, values[: self.dimension])
@@ -146,7 +147,7 @@ class ArticulatedCSpace(CSpace):
 
     def motion_proofs(self, first: ArrayLike, second: ArrayLike) -> NDArray[np.int64]:
         """Number of proofs that each motion took, shape (m,); negative if it was refused."""
-        begin, end = self.poses(first), self.poses(second)
+        begin, end = self._pairs(first, second)
         counts = np.empty(len(begin), dtype=np.int64)
         articulated_motion.articulated_motions_are_free(
             self.scene, self.kinematics, begin, end, counts
@@ -168,7 +169,7 @@ class ArticulatedCSpace(CSpace):
         low = self.clearance_required
         trial = low + 0.999 * (high - low)
         work = articulated_motion.new_motion_workspace(self.scene, self.kinematics)
-        begin, end = self.poses(first)[0], self.poses(second)[0]
+        begin, end = self.pose(first), self.pose(second)
         for _ in range(_CLEARANCE_PROOFS):
             if high - low <= 1e-3 * high:
                 break
@@ -192,13 +193,10 @@ class ArticulatedCSpace(CSpace):
         robot = self.articulated
         if robot.base == FIXED_BASE:
             raise GeometryError("a robot on a fixed base does not translate: it has no layers")
-        values = np.asarray(orientation, dtype=float)
-        if values.shape != (robot.configuration_size,):
-            raise GeometryError(
-                f"expected a configuration of {robot.configuration_size} numbers, "
-                f"got shape {values.shape}"
-            )
-        values = values.copy()
+        if orientation is None:
+            size = robot.configuration_size
+            raise GeometryError(f"expected a configuration of {size} numbers, got none")
+        values = self._one(orientation)
         values[: self.dimension] = 0.0
         rotation = robot.pose(values)[1]
         return Layer(self.world, self.scene, rotation, self.placed(values), robot.bodies_at(values))

@@ -12,9 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.cspace.poses import heading_between, rotation_between, rotation_quaternion
-from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.orientation import normalised_heading
-from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
+from ellipsoid_planning.robots.articulated import (
+    FIXED_BASE,
+    ArticulatedRobot,
+    check_articulated,
+)
+from ellipsoid_planning.robots.configurations import (
+    checked_configuration,
+    checked_configurations,
+)
 from ellipsoid_planning.robots.joint import BALL, CONTINUOUS
 
 Array = NDArray[np.float64]
@@ -24,9 +31,10 @@ def rows_of(robot: ArticulatedRobot, configurations: ArrayLike) -> Array:
     """Rows (m, 7 + V) of configurations (m, d) or (d,).
 
     Raises:
-        GeometryError: if the configurations have another size.
+        GeometryError: if they are no configurations of finite numbers, or the robot is rigid.
     """
-    values = _checked(robot, configurations)
+    check_articulated(robot)
+    values = checked_configurations(configurations, robot.configuration_size)
     n, base = robot.dimension, robot.base_size
     out = np.zeros((len(values), 7 + values.shape[1] - base))
     out[:, 7:] = values[:, base:]
@@ -37,25 +45,19 @@ def rows_of(robot: ArticulatedRobot, configurations: ArrayLike) -> Array:
     if robot.orientation is not None:
         out[:, 3:7] = rotation_quaternion(robot.orientation)
     elif n == 2:
-        with np.errstate(invalid="ignore"):  # what is no number becomes no rotation
-            out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
+        out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
     else:
         out[:, 3:7] = values[:, 3:7]
     return out
 
 
-def _checked(robot: ArticulatedRobot, configurations: ArrayLike) -> Array:
-    values = np.atleast_2d(np.asarray(configurations, dtype=float))
-    if values.ndim != 2 or values.shape[1] != robot.configuration_size:
-        raise GeometryError(
-            f"expected configurations of {robot.configuration_size} numbers, "
-            f"got shape {np.shape(configurations)}"
-        )
-    return values
-
-
 def configurations_of_rows(robot: ArticulatedRobot, rows: Array) -> Array:
-    """Configurations (m, d) of rows (m, 7 + V); continuous joints are brought into [-pi, pi)."""
+    """Configurations (m, d) of rows (m, 7 + V); continuous joints are brought into [-pi, pi).
+
+    Raises:
+        GeometryError: if the robot is rigid.
+    """
+    check_articulated(robot)
     n, base = robot.dimension, robot.base_size
     out = np.empty((len(rows), robot.configuration_size))
     out[:, base:] = rows[:, 7:]
@@ -73,8 +75,14 @@ def configurations_of_rows(robot: ArticulatedRobot, rows: Array) -> Array:
 
 
 def interpolated(robot: ArticulatedRobot, first: ArrayLike, second: ArrayLike, s: float) -> Array:
-    """The configuration (d,) at ``s`` in [0, 1], as OMPL interpolates the compound space."""
-    a, b = _checked(robot, first)[0], _checked(robot, second)[0]
+    """The configuration (d,) at ``s`` in [0, 1], as OMPL interpolates the compound space.
+
+    Raises:
+        GeometryError: as :func:`rows_of`, and for more than one configuration.
+    """
+    check_articulated(robot)
+    a = checked_configuration(first, robot.configuration_size)
+    b = checked_configuration(second, robot.configuration_size)
     out = a + s * (b - a)
     if robot.rotates and robot.dimension == 2:
         out[2] = heading_between(a[2], b[2], s)

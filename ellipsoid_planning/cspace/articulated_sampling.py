@@ -25,7 +25,16 @@ class ArticulatedSampling:
     """
 
     def __init__(self, cspace: ArticulatedCSpace, seed: int, uniform: bool = True) -> None:
-        """Prepare to draw from ``cspace``; the same ``seed`` gives the same configurations."""
+        """Prepare to draw from ``cspace``; the same ``seed`` gives the same configurations.
+
+        Raises:
+            GeometryError: if the robot is rigid, see `FreeIntervalSampling`.
+        """
+        if not isinstance(cspace, ArticulatedCSpace):
+            raise GeometryError(
+                f"expected the C-space of an articulated robot, got that of a "
+                f"{type(cspace.robot).__name__}; draw from it with FreeIntervalSampling"
+            )
         self._cspace = cspace
         self._uniform = uniform
         self._random = np.random.default_rng(seed)
@@ -46,11 +55,11 @@ class ArticulatedSampling:
         The distance is OMPL's. Returns False if 64 draws in a row were refused.
 
         Raises:
-            GeometryError: if the distance is negative.
+            GeometryError: if the distance is negative, or it is no single configuration.
         """
         if not distance >= 0.0:
             raise GeometryError(f"expected a distance of at least 0, got {distance}")
-        return self._draw(self._cspace.poses(configuration)[0], distance, out)
+        return self._draw(self._cspace.pose(configuration), distance, out)
 
     def _draw(self, near: Array, distance: float, out: Array) -> bool:
         self._random.random(out=self._numbers)

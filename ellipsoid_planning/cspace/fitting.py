@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ellipsoid_planning.geometry.directions import unit_directions
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.rigid import RigidRobot, check_rigid
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,12 @@ _ROUGHLY_SAME = 0.05
 
 
 def width(robot: RigidRobot, directions: ArrayLike) -> Array:
-    """Widths (m,) of the robot along unit ``directions`` (m, n) of its base frame."""
+    """Widths (m,) of the robot along unit ``directions`` (m, n) of its base frame.
+
+    Raises:
+        GeometryError: if the robot is not rigid.
+    """
+    check_rigid(robot)
     u = np.atleast_2d(np.asarray(directions, dtype=float))
     supports = np.array([[part.support(u), part.support(-u)] for part in robot.parts])
     return np.asarray(supports.max(axis=0).sum(axis=0))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.cspace.joint_ranges import NEVER, JointBoxes
 from ellipsoid_planning.cspace.joint_routes import Route, restricted
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.configurations import checked_configuration
 from ellipsoid_planning.robots.joint import BALL, Joint
 
 Array = NDArray[np.float64]
@@ -64,7 +65,9 @@ def excluding_limits(
 
 def _value(robot: ArticulatedRobot, joint: Joint, configuration: ArrayLike | None) -> float:
     at = robot.joint_slices[joint.name].start
-    value = 0.0 if configuration is None else float(np.asarray(configuration, dtype=float)[at])
+    value = 0.0
+    if configuration is not None:
+        value = float(checked_configuration(configuration, robot.configuration_size)[at])
     return min(max(value, joint.lower), joint.upper)
 
 

@@ -138,7 +138,7 @@ def _line_count(cspace: CSpace, kind: int) -> int:
 
 def _near(cspace: CSpace, layer: ArrayLike | None) -> Array:
     if layer is not None:
-        return np.array(cspace.poses(layer)[0])
+        return cspace.pose(layer).copy()
     return np.array(cspace.poses(np.zeros(cspace.robot.configuration_size))[0])
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.cspace.packing import scene_within
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import layout
+from ellipsoid_planning.robots.rigid import check_rigid
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -27,8 +28,9 @@ class LocalCSpace(CSpace):
         """Confine base positions to the bounds within the box from ``low`` to ``high`` (n,).
 
         Raises:
-            GeometryError: if nothing of the bounds is in the box.
+            GeometryError: if nothing of the bounds is in the box, or the robot is articulated.
         """
+        check_rigid(whole.robot)
         self.robot, self.clearance_required = whole.robot, whole.clearance_required
         self._low, self._high = np.zeros(3), np.zeros(3)
         n = whole.dimension
@@ -43,7 +45,7 @@ class LocalCSpace(CSpace):
 
     def clearance(self, configuration: ArrayLike) -> float:
         """As of the whole C-space, but no more than what is known of bodies that were left out."""
-        position = self.poses(configuration)[0, :3]
+        position = self.pose(configuration)[:3]
         beyond = np.maximum(0.0, np.maximum(self._low - position, position - self._high))
         known = self._horizon - float(np.linalg.norm(beyond))
         found = super().clearance(configuration)

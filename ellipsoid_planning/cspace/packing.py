@@ -15,7 +15,7 @@ from ellipsoid_planning.geometry.rows import (
     shrunk_axes,
 )
 from ellipsoid_planning.kernels import broad_phase, layout
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.rigid import RigidRobot, check_rigid
 from ellipsoid_planning.world import World
 
 Array = NDArray[np.float64]
@@ -37,8 +37,9 @@ def pack_scene(world: World, robot: RigidRobot, clearance: float) -> Array:
     """The scene as one flat array, read-only (kernels.layout tells what stands where).
 
     Raises:
-        GeometryError: if the clearance leaves nothing of an arena.
+        GeometryError: if the clearance leaves nothing of an arena, or the robot is not rigid.
     """
+    check_rigid(robot)
     parts = np.array([part_row(part) for part in robot.parts])
     return pack_parts(world, parts, max(farthest(part) for part in robot.parts), clearance)
 

@@ -11,13 +11,16 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.geometry.orientation import (
     normalised_heading,
     quaternion_from_rotation,
     yaw_from_rotation,
 )
-from ellipsoid_planning.robots.rigid import RigidRobot
+from ellipsoid_planning.robots.configurations import (
+    checked_configuration,
+    checked_configurations,
+)
+from ellipsoid_planning.robots.rigid import RigidRobot, check_rigid
 
 Array = NDArray[np.float64]
 
@@ -25,38 +28,33 @@ Array = NDArray[np.float64]
 SAME_QUATERNION = 1.0 - 1e-9
 
 
-def _checked(robot: RigidRobot, configurations: ArrayLike) -> Array:
-    values = np.atleast_2d(np.asarray(configurations, dtype=float))
-    if values.ndim != 2 or values.shape[1] != robot.configuration_size:
-        raise GeometryError(
-            f"expected configurations of {robot.configuration_size} numbers, "
-            f"got shape {np.shape(configurations)}"
-        )
-    return values
-
-
 def poses(robot: RigidRobot, configurations: ArrayLike) -> Array:
     """Poses (m, 7) of configurations (m, d) or (d,).
 
     Raises:
-        GeometryError: if the configurations have another size.
+        GeometryError: if they are no configurations of finite numbers, or the robot is not rigid.
     """
-    values = _checked(robot, configurations)
+    check_rigid(robot)
+    values = checked_configurations(configurations, robot.configuration_size)
     n = robot.dimension
     out = np.zeros((len(values), 7))
     out[:, :n] = values[:, :n]
     if robot.orientation is not None:
         out[:, 3:] = rotation_quaternion(robot.orientation)
     elif n == 2:
-        with np.errstate(invalid="ignore"):  # what is no number becomes no rotation
-            out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
+        out[:, 5], out[:, 6] = np.sin(0.5 * values[:, 2]), np.cos(0.5 * values[:, 2])
     else:
         out[:, 3:] = values[:, 3:]
     return out
 
 
 def configurations_from_poses(robot: RigidRobot, rows: Array) -> Array:
-    """Configurations (m, d) of poses (m, 7)."""
+    """Configurations (m, d) of poses (m, 7).
+
+    Raises:
+        GeometryError: if the robot is not rigid.
+    """
+    check_rigid(robot)
     n = robot.dimension
     if not robot.rotates:
         return rows[:, :n].copy()
@@ -80,8 +78,13 @@ def interpolate(robot: RigidRobot, first: ArrayLike, second: ArrayLike, s: float
 
     Position is linear, headings take the shortest way, quaternions the shortest arc; below a
     rotation of about 9e-5 rad OMPL keeps the first orientation.
+
+    Raises:
+        GeometryError: as :func:`poses`, and for more than one configuration.
     """
-    a, b = _checked(robot, first)[0], _checked(robot, second)[0]
+    check_rigid(robot)
+    a = checked_configuration(first, robot.configuration_size)
+    b = checked_configuration(second, robot.configuration_size)
     n = robot.dimension
     out = a + s * (b - a)
     if not robot.rotates:

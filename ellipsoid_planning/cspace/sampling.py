@@ -9,6 +9,7 @@ from ellipsoid_planning.cspace.poses import configurations_from_poses, poses
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import GeometryError
 from ellipsoid_planning.kernels import sampling
+from ellipsoid_planning.robots.rigid import RigidRobot
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,16 @@ class FreeIntervalSampling:
     """
 
     def __init__(self, cspace: CSpace, seed: int, uniform: bool = True) -> None:
-        """Prepare to draw from ``cspace``; the same ``seed`` gives the same configurations."""
+        """Prepare to draw from ``cspace``; the same ``seed`` gives the same configurations.
+
+        Raises:
+            GeometryError: if the robot is articulated, see `ArticulatedSampling`.
+        """
+        if not isinstance(cspace.robot, RigidRobot):
+            raise GeometryError(
+                f"expected the C-space of a rigid robot, got that of an "
+                f"{type(cspace.robot).__name__}; draw from it with ArticulatedSampling"
+            )
         self._cspace = cspace
         self._uniform = uniform
         self._random = np.random.default_rng(seed)
@@ -48,11 +58,11 @@ class FreeIntervalSampling:
         The distance is OMPL's. Returns False if 64 lines in a row were refused.
 
         Raises:
-            GeometryError: if the distance is negative.
+            GeometryError: if the distance is negative, or it is no single configuration.
         """
         if not distance >= 0.0:
             raise GeometryError(f"expected a distance of at least 0, got {distance}")
-        return self._draw(poses(self._cspace.robot, configuration)[0], distance, out)
+        return self._draw(self._cspace.pose(configuration), distance, out)
 
     def _draw(self, near: Array, distance: float, out: Array) -> bool:
         self._random.random(out=self._numbers)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from numbers import Real
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,8 +19,11 @@ from ellipsoid_planning.cspace.poses import (
     rotation_quaternion,
 )
 from ellipsoid_planning.errors import GeometryError
+from ellipsoid_planning.geometry.orientation import check_rotation
 from ellipsoid_planning.kernels import layout, motion, motion_clearance, placement, validity
 from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.robots.articulated import ArticulatedRobot
+from ellipsoid_planning.robots.configurations import as_numbers, checked_configuration
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.world import World
@@ -36,17 +40,24 @@ def check_clearance(world: World, robot: Robot, clearance: float) -> None:
     Raises:
         GeometryError: if not.
     """
+    given: Any = world
+    if not isinstance(given, World):
+        raise GeometryError(f"expected a World first, then a robot; got {type(world).__name__}")
     if world.dimension != robot.dimension:
         raise GeometryError(
             f"expected a robot of the world's dimension {world.dimension}, "
             f"got dimension {robot.dimension}"
         )
-    if not 0.0 <= clearance < np.inf:
-        raise GeometryError(f"expected a clearance of at least 0, got {clearance}")
+    number: Any = clearance
+    if not (isinstance(number, Real) and 0.0 <= float(number) < np.inf):
+        raise GeometryError(f"expected a clearance of at least 0, got {clearance!r}")
 
 
 class CSpace:
     """A robot's configurations in a world, with proofs of what is free.
+
+    ``CSpace(world, robot)`` is the C-space of any robot: for an articulated one it makes the
+    subclass that knows its joints, as ``pathlib.Path`` makes a path of the system's kind.
 
     Whatever is called valid is proved so, rounding included. What is free may be refused
 
@@ -60,13 +71,38 @@ class CSpace:
         scene: the packed array that kernels read, read-only (kernels.layout).
     """
 
-    def __init__(self, world: World, robot: RigidRobot, clearance: float = 0.0) -> None:
+    _kinds: ClassVar[list[tuple[type, type[CSpace]]]] = []
+
+    def __init_subclass__(cls, robots: type | None = None, **rest: Any) -> None:
+        """Let ``CSpace(world, robot)`` make this subclass for robots of the class ``robots``."""
+        super().__init_subclass__(**rest)
+        if robots is not None:
+            CSpace._kinds.append((robots, cls))
+
+    def __new__(cls, *given: Any, **named: Any) -> CSpace:  # noqa: PYI034 (or a subclass)
+        """Make the C-space of the kind that the robot needs."""
+        robot = named.get("robot", given[1] if len(given) > 1 else None)
+        kinds = CSpace._kinds if cls is CSpace else []
+        kind = next((kind for robots, kind in kinds if isinstance(robot, robots)), cls)
+        return super().__new__(kind)
+
+    def __init__(
+        self, world: World, robot: RigidRobot | ArticulatedRobot, clearance: float = 0.0
+    ) -> None:
         """Characterise the C-space.
 
+        Args:
+            world: obstacles, arenas and bounds.
+            robot: rigid or articulated, of the world's dimension.
+            clearance: the distance that every valid configuration and motion keeps.
+
         Raises:
-            GeometryError: if the dimensions differ or the clearance is negative, not finite, or
-                leaves nothing of an arena.
+            GeometryError: if it is no robot, the dimensions differ, or the clearance is negative,
+                not finite, or leaves nothing of an arena.
         """
+        if not isinstance(robot, RigidRobot):
+            expected = "a RigidRobot or an ArticulatedRobot"
+            raise GeometryError(f"expected {expected}, got {type(robot).__name__}")
         check_clearance(world, robot, clearance)
         self.world, self.robot = world, robot
         self.clearance_required = float(clearance)
@@ -111,13 +147,34 @@ class CSpace:
         """Spatial poses (m, 7) of configurations (m, d) or (d,); see :mod:`cspace.poses`."""
         return poses(self.robot, configurations)
 
+    def pose(self, configuration: ArrayLike) -> Array:
+        """The row of :meth:`poses` of a single configuration (d,).
+
+        Raises:
+            GeometryError: if it is no single configuration of finite numbers.
+        """
+        return self.poses(self._one(configuration))[0]
+
+    def _one(self, configuration: ArrayLike) -> Array:
+        return checked_configuration(configuration, self.robot.configuration_size)
+
+    def _pairs(self, first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
+        """The rows of :meth:`poses` of as many first as second configurations."""
+        begin, end = self.poses(first), self.poses(second)
+        if len(begin) != len(end):
+            raise GeometryError(
+                f"expected as many last configurations as first ones, got {len(begin)} and "
+                f"{len(end)}"
+            )
+        return begin, end
+
     def configurations(self, rows: Array) -> Array:
         """Configurations (m, d) of spatial poses (m, 7)."""
         return configurations_from_poses(self.robot, rows)
 
     def is_valid(self, configuration: ArrayLike) -> bool:
         """Whether a configuration (d,) is provably free, in bounds and at the clearance."""
-        return bool(validity.configuration_is_free(self.scene, *self.poses(configuration)[0]))
+        return bool(validity.configuration_is_free(self.scene, *self.pose(configuration)))
 
     def are_valid(self, configurations: ArrayLike) -> NDArray[np.bool_]:
         """:meth:`is_valid` of every row of ``configurations`` (m, d), shape (m,)."""
@@ -132,14 +189,14 @@ class CSpace:
         Negative where they meet: minus the penetration along one direction, or −1 outside an
         arena. Infinite in an empty world.
         """
-        return float(validity.clearance_of(self.scene, *self.poses(configuration)[0]))
+        return float(validity.clearance_of(self.scene, *self.pose(configuration)))
 
     def explain(self, configuration: ArrayLike) -> tuple[Contact, ...]:
         """Everything that makes a configuration (d,) invalid; empty if it is valid."""
         if self.is_valid(configuration):
             return ()
         values = np.asarray(configuration, dtype=float)
-        pose = self.poses(values)[0]
+        pose = self.pose(values)
         contacts = bound_contacts(self.world, values[: self.dimension])
         contacts += body_contacts(self.world, self.robot, self.scene, pose)
         return tuple(contacts)
@@ -149,7 +206,7 @@ class CSpace:
 
         The motion is OMPL's interpolation in continuous time; see kernels.motion.
         """
-        return bool(self.are_motions_valid(first, second)[0])
+        return bool(self.are_motions_valid(self._one(first), self._one(second))[0])
 
     def are_motions_valid(self, first: ArrayLike, second: ArrayLike) -> NDArray[np.bool_]:
         """:meth:`is_motion_valid` of every pair of rows (m, d), shape (m,)."""
@@ -157,7 +214,7 @@ class CSpace:
 
     def motion_proofs(self, first: ArrayLike, second: ArrayLike) -> NDArray[np.int64]:
         """Number of proofs that each motion took, shape (m,); negative if it was refused."""
-        begin, end = self.poses(first), self.poses(second)
+        begin, end = self._pairs(first, second)
         counts = np.empty(len(begin), dtype=np.int64)
         motion.motions_are_free(self.scene, begin, end, counts)
         return counts
@@ -168,7 +225,7 @@ class CSpace:
         Infinite in an empty world; else within about 1e-3 of the smallest sampled clearance where
         proofs reach that far.
         """
-        begin, end = self.poses(first)[0], self.poses(second)[0]
+        begin, end = self.pose(first), self.pose(second)
         if not (self.world.obstacles or self.world.arenas) and self.is_motion_valid(first, second):
             return math.inf
         return float(
@@ -183,28 +240,30 @@ class CSpace:
 
     def distance(self, first: ArrayLike, second: ArrayLike) -> float:
         """OMPL's default distance of two configurations (d,)."""
-        return path_length(self.robot, np.array([first, second], dtype=float))
+        return path_length(self.robot, np.array([self._one(first), self._one(second)]))
 
     def layer(self, orientation: ArrayLike | None = None) -> Layer:
         """The layer of a rotation (n, n), or of the orientation of a configuration (d,).
 
+        A robot that only translates needs neither.
+
         Raises:
             GeometryError: if ``orientation`` is neither.
         """
-        given = np.zeros(self.dimension) if orientation is None else np.asarray(orientation, float)
-        n = self.dimension
+        n, robot = self.dimension, self.robot
+        expected = f"a rotation ({n}, {n}) or a configuration of {robot.configuration_size} numbers"
+        if orientation is None and robot.orientation is not None:
+            return self._layer(robot.orientation)
+        given = as_numbers([] if orientation is None else orientation, expected)
         if given.shape == (n, n):
-            rotation = given
-        elif self.robot.orientation is not None:
-            rotation = self.robot.orientation
-        elif given.shape == (self.robot.configuration_size,):
-            rotation = self.robot.pose(given)[1]
-        else:
-            raise GeometryError(
-                f"expected a rotation ({n}, {n}) or a configuration of "
-                f"{self.robot.configuration_size} numbers, got shape {given.shape}"
-            )
-        placed = np.empty((len(self.robot.parts), layout.PLACED))
+            return self._layer(check_rotation(given, n))
+        if given.shape != (robot.configuration_size,):
+            raise GeometryError(f"expected {expected}, got shape {given.shape}")
+        return self._layer(robot.pose(given)[1])
+
+    def _layer(self, rotation: Array) -> Layer:
+        n, robot = self.dimension, self.robot
+        placed = np.empty((len(robot.parts), layout.PLACED))
         placement.place(self.scene, 0.0, 0.0, 0.0, *rotation_quaternion(rotation), placed)
-        bodies = tuple(part.transform(rotation, np.zeros(n)) for part in self.robot.parts)
+        bodies = tuple(part.transform(rotation, np.zeros(n)) for part in robot.parts)
         return Layer(self.world, self.scene, rotation, placed, bodies)

@@ -14,7 +14,6 @@ from contextlib import contextmanager, suppress
 import numpy as np
 
 from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import (
@@ -110,4 +109,4 @@ def main(articulated: bool) -> None:
     if articulated:
         joint = Joint.of("joint", "one", "other", "continuous", [3.0, 0.0, 0.0])
         robot = ArticulatedRobot((Link("one", (ball,)), Link("other", (ball,))), (joint,))
-    compile_passage_kernels(cspace_of(world, robot))
+    compile_passage_kernels(CSpace(world, robot))

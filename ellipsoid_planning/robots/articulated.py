@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,7 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_quaternion,
     rotation_from_yaw,
 )
+from ellipsoid_planning.robots.configurations import checked_configuration
 from ellipsoid_planning.robots.joint import BALL, FIXED, PRISMATIC, Joint
 from ellipsoid_planning.robots.reach import joint_weights, robot_reach
 from ellipsoid_planning.robots.tree import check_tree, joints_in_order
@@ -212,13 +214,7 @@ class ArticulatedRobot:
         return values[:3], rotation_from_quaternion(values[3:7])
 
     def _checked(self, configuration: ArrayLike) -> Array:
-        values = np.array(configuration, dtype=float)
-        if values.shape != (self.configuration_size,) or not np.all(np.isfinite(values)):
-            raise GeometryError(
-                f"expected a configuration of {self.configuration_size} finite numbers, "
-                f"got {values.tolist()}"
-            )
-        return values
+        return checked_configuration(configuration, self.configuration_size)
 
     def link_poses(self, configuration: ArrayLike) -> dict[str, tuple[Array, Array]]:
         """Position (n,) and rotation (n, n) of every link's frame in the world, by name.
@@ -244,6 +240,19 @@ class ArticulatedRobot:
             position, rotation = poses[link]
             bodies.append(part.transform(rotation, position))
         return tuple(bodies)
+
+
+def check_articulated(robot: Any) -> None:
+    """Refuse what is not an articulated robot, a rigid one above all.
+
+    Raises:
+        GeometryError: if it is none.
+    """
+    if not isinstance(robot, ArticulatedRobot):
+        raise GeometryError(
+            f"expected an ArticulatedRobot, got {type(robot).__name__}; CSpace(world, robot) is "
+            "the C-space of every robot"
+        )
 
 
 def _motion(joint: Joint, values: Array) -> tuple[Array, Array]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,7 @@ from ellipsoid_planning.geometry.orientation import (
     rotation_from_quaternion,
     rotation_from_yaw,
 )
+from ellipsoid_planning.robots.configurations import checked_configuration
 from ellipsoid_planning.robots.joint import Joint
 from ellipsoid_planning.sizes import check_bodies
 
@@ -111,13 +113,11 @@ class RigidRobot:
         """Return the base position (n,) and rotation (n, n), base to world, of a configuration.
 
         A quaternion of any positive length is taken for the rotation it points at.
+
+        Raises:
+            GeometryError: if it is no single configuration of finite numbers.
         """
-        values = np.array(configuration, dtype=float)
-        if values.shape != (self.configuration_size,) or not np.all(np.isfinite(values)):
-            raise GeometryError(
-                f"expected a configuration of {self.configuration_size} finite numbers, "
-                f"got {values.tolist()}"
-            )
+        values = checked_configuration(configuration, self.configuration_size)
         return values[: self.dimension], self._rotation(values)
 
     def _rotation(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -131,3 +131,16 @@ class RigidRobot:
         """Return the parts in the world frame at a configuration (d,)."""
         position, rotation = self.pose(configuration)
         return tuple(part.transform(rotation, position) for part in self.parts)
+
+
+def check_rigid(robot: Any) -> None:
+    """Refuse what is not a rigid robot, an articulated one above all.
+
+    Raises:
+        GeometryError: if it is none.
+    """
+    if not isinstance(robot, RigidRobot):
+        raise GeometryError(
+            f"expected a RigidRobot, got {type(robot).__name__}; CSpace(world, robot) knows the "
+            "poses and motions of every robot"
+        )

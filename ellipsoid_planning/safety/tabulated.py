@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ellipsoid_planning.cspace.articulated_packing import bodies_of
 from ellipsoid_planning.errors import TableError
 from ellipsoid_planning.kernels import safety_table
+from ellipsoid_planning.robots.configurations import checked_configuration
 from ellipsoid_planning.safety.build import MOST_INTERVALS, Progress, fill_tables
 from ellipsoid_planning.safety.exact import ExactSafety, mean_time
 from ellipsoid_planning.safety.function import SafetyReport, TableReport
@@ -76,7 +77,8 @@ class TabulatedSafety:
 
     def is_safe(self, configuration: ArrayLike) -> bool:
         """Whether a configuration (d,) is proved safe."""
-        return bool(self.are_safe(configuration)[0])
+        size = self.cspace.robot.configuration_size
+        return bool(self.are_safe(checked_configuration(configuration, size))[0])
 
     def are_safe(self, configurations: ArrayLike) -> NDArray[np.bool_]:
         """Whether each configuration (m, d) is proved safe, shape (m,)."""

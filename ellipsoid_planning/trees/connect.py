@@ -19,6 +19,7 @@ from ellipsoid_planning.outcome import SOLVED, TIMEOUT, Outcome
 from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.shorten import shorten
+from ellipsoid_planning.robots.rigid import check_rigid
 from ellipsoid_planning.trees.parameters import TreeParameters
 from ellipsoid_planning.trees.tables import edges_of, grown, new_trees, path_of
 
@@ -48,7 +49,12 @@ class FreeIntervalRRTConnect:
     """
 
     def __init__(self, cspace: CSpace, parameters: TreeParameters | None = None) -> None:
-        """Prepare to plan; nothing is computed yet."""
+        """Prepare to plan; nothing is computed yet.
+
+        Raises:
+            GeometryError: if the robot is not rigid.
+        """
+        check_rigid(cspace.robot)
         self.cspace = cspace
         self.parameters = parameters or TreeParameters()
         robot = cspace.robot

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ellipsoid_planning.cspace.of import cspace_of
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.kernels import contact_model, robot_model
 from ellipsoid_planning.kernels.centring import new_workspace
@@ -53,7 +53,7 @@ def proved(cspace, path, start, goal):
 
 
 def test_a_snake_finds_its_way_between_forty_obstacles():
-    cspace = cspace_of(scattered(), snake())
+    cspace = CSpace(scattered(), snake())
     rows = free(cspace, np.random.default_rng(1), 12, 0.0, 10.0)
     for start, goal in rows.reshape(-1, 2, 7):
         outcome = HighwayRoadmap(cspace).solve(start[None], goal[None], never)
@@ -65,7 +65,7 @@ def test_a_snake_finds_its_way_between_forty_obstacles():
 
 @pytest.mark.parametrize("play", [0.1, 1e-5])
 def test_a_chain_of_eighteen_degrees_of_freedom_threads_a_slit(play):
-    cspace = cspace_of(slit(play), chain())
+    cspace = CSpace(slit(play), chain())
     rng = np.random.default_rng(3)
     starts = free(cspace, rng, 3, [-12.0, -3.0, -3.0], [-6.0, 3.0, 3.0], 1.5)
     goals = free(cspace, rng, 3, [6.0, -3.0, -3.0], [12.0, 3.0, 3.0], 1.5)
@@ -79,7 +79,7 @@ def test_a_chain_of_eighteen_degrees_of_freedom_threads_a_slit(play):
 
 
 def test_a_closed_slit_is_not_passed():
-    cspace = cspace_of(slit(-1e-6), chain(2))
+    cspace = CSpace(slit(-1e-6), chain(2))
     rng = np.random.default_rng(3)
     start = free(cspace, rng, 1, [-12.0, -3.0, -3.0], [-6.0, 3.0, 3.0], 1.0)
     goal = free(cspace, rng, 1, [6.0, -3.0, -3.0], [12.0, 3.0, 3.0], 1.0)
@@ -102,7 +102,7 @@ def arm():
 
 def test_an_arm_on_a_fixed_base_goes_round_a_post():
     post = Ellipsoid.from_semi_axes([0.2, 0.2, 3.0], [1.2, 0.0, 0.0])
-    cspace = cspace_of(World(np.full(3, -3.0), np.full(3, 3.0), (post,)), arm())
+    cspace = CSpace(World(np.full(3, -3.0), np.full(3, 3.0), (post,)), arm())
     start, goal = np.array([0.7, 0.0, 0.0]), np.array([-0.7, 0.0, 0.0])
     assert cspace.are_valid([start, goal]).all()
     assert not cspace.is_motion_valid(start, goal)
@@ -112,7 +112,7 @@ def test_an_arm_on_a_fixed_base_goes_round_a_post():
 
 
 def test_layers_are_spread_within_limits_and_clear_of_themselves():
-    planar, spatial = cspace_of(scattered(), snake(2)), cspace_of(slit(0.1), chain(3))
+    planar, spatial = CSpace(scattered(), snake(2)), CSpace(slit(0.1), chain(3))
     grid = spread_layers(planar, 100)
     assert 80 <= len(grid) <= 400
     angles = np.unique(grid[:, 4])
@@ -138,7 +138,7 @@ def test_low_discrepancy_fills_the_cube_evenly():
 
 
 def test_guides_lead_from_start_to_goal():
-    cspace = cspace_of(scattered(), snake(3))
+    cspace = CSpace(scattered(), snake(3))
     rng = np.random.default_rng(0)
     first, last = cspace.poses(free(cspace, rng, 2, 0.0, 10.0))
     rows = guided_layers(cspace, first, last, 3)
@@ -151,7 +151,7 @@ def test_guides_lead_from_start_to_goal():
 
 
 def test_the_distance_of_layers_is_the_weighted_sum_of_turns():
-    cspace = cspace_of(slit(0.1), chain(3))
+    cspace = CSpace(slit(0.1), chain(3))
     robot, rng = cspace.robot, np.random.default_rng(5)
     one, two = cspace.poses(random_configurations(robot, rng, 2, -1.0, 1.0))
     expected = 2.0 * np.arccos(abs(one[3:7] @ two[3:7])) * 1.7
@@ -166,7 +166,7 @@ def test_the_distance_of_layers_is_the_weighted_sum_of_turns():
 def test_gradients_of_gaps_are_those_of_finite_steps(kind):
     # Gaps to the walls of arenas are estimates, so there are none here.
     world = scattered() if kind == "snake" else replace(slit(0.4), arenas=())
-    cspace = cspace_of(world, snake() if kind == "snake" else chain())
+    cspace = CSpace(world, snake() if kind == "snake" else chain())
     rng, model = np.random.default_rng(2), cspace.model
     low, high = (0.0, 10.0) if kind == "snake" else ([-6.0, -2.0, -0.5], [2.0, 2.0, 0.5])
     size, checked = robot_model.step_count(model), 0
@@ -203,7 +203,7 @@ def test_gradients_of_gaps_are_those_of_finite_steps(kind):
 
 
 def test_steps_and_differences_are_inverse():
-    cspace = cspace_of(slit(0.1), chain(3))
+    cspace = CSpace(slit(0.1), chain(3))
     rng, model = np.random.default_rng(4), cspace.model
     one, two = cspace.poses(random_configurations(cspace.robot, rng, 2, -1.0, 1.0, 1.0))
     step, out = np.empty(robot_model.step_count(model)), one.copy()
@@ -215,7 +215,7 @@ def test_steps_and_differences_are_inverse():
 
 
 def test_a_roadmap_over_joints_is_saved_and_loaded(tmp_path):
-    cspace = cspace_of(slit(1e-3), chain(3))
+    cspace = CSpace(slit(1e-3), chain(3))
     rng = np.random.default_rng(7)
     start = free(cspace, rng, 1, [-12.0, -3.0, -3.0], [-6.0, 3.0, 3.0], 1.0)
     goal = free(cspace, rng, 1, [6.0, -3.0, -3.0], [12.0, 3.0, 3.0], 1.0)
@@ -240,11 +240,11 @@ def test_a_roadmap_over_joints_is_saved_and_loaded(tmp_path):
         ),
     )
     with pytest.raises(Exception, match="another robot"):
-        HighwayRoadmap.load(tmp_path / "roadmap", cspace_of(slit(1e-3), stretched))
+        HighwayRoadmap.load(tmp_path / "roadmap", CSpace(slit(1e-3), stretched))
 
 
 def test_anytime_paths_get_no_longer():
-    cspace = cspace_of(scattered(), snake(3))
+    cspace = CSpace(scattered(), snake(3))
     rows = free(cspace, np.random.default_rng(11), 2, 0.0, 10.0)
     found = []
     calls = iter(range(400))

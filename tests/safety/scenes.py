@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ellipsoid_planning.cspace.of import cspace_of
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link, RigidRobot
 from ellipsoid_planning.safety import TableParameters
@@ -62,7 +62,7 @@ def crowd(dimension, count=25, arena=False, seed=5):
 def crowded(kind, arena=False, clearance=0.0):
     """The C-space of a robot of KINDS in a crowd."""
     own = robot(kind)
-    return cspace_of(crowd(own.dimension, arena=arena), own, clearance)
+    return CSpace(crowd(own.dimension, arena=arena), own, clearance)
 
 
 def rigid(dimension, rotates=True):
@@ -73,7 +73,7 @@ def rigid(dimension, rotates=True):
         for own, x in zip(axes, (0.0, 0.5), strict=True)
     ]
     turned = None if rotates else rotation(np.random.default_rng(3), dimension)
-    return cspace_of(crowd(dimension), RigidRobot(tuple(parts), rotates, turned))
+    return CSpace(crowd(dimension), RigidRobot(tuple(parts), rotates, turned))
 
 
 def states(cspace, count, seed=1):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ellipsoid_planning.cspace.of import cspace_of
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.errors import TableError
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.geometry.orientation import rotation_from_quaternion
@@ -40,7 +40,7 @@ def test_trees_of_links_of_several_parts_are_answered_as_exactly(dimension, base
     rng, open_ = np.random.default_rng([dimension, len(base)]), 0
     for seed in range(4):
         own = random_tree(rng, dimension, base)
-        cspace = cspace_of(crowd(dimension, 12, arena=seed == 3, seed=seed), own)
+        cspace = CSpace(crowd(dimension, 12, arena=seed == 3, seed=seed), own)
         safety = TabulatedSafety(cspace, COARSE, keep=False)
         drawn = np.array([random_configuration(rng, own) for _ in range(300)])
         assert np.array_equal(safety.are_safe(drawn), cspace.are_valid(drawn))
@@ -62,7 +62,7 @@ def test_needles_among_needles_and_discs(dimension, ratio):
     wide = np.array([2.0 / ratio, 2.0, 2.0][:dimension])
     bodies = tuple(Ellipsoid(body.centre, body.rotation, wide) for body in world.obstacles)
     robot_ = RigidRobot((Ellipsoid.from_semi_axes(thin),))
-    cspace = cspace_of(World(world.low, world.high, bodies), robot_)
+    cspace = CSpace(World(world.low, world.high, bodies), robot_)
     safety = TabulatedSafety(cspace, COARSE, keep=False)
     drawn = np.concatenate([states(cspace, 500), near_contact(cspace, 5)])
     assert np.array_equal(safety.are_safe(drawn), cspace.are_valid(drawn))
@@ -177,7 +177,7 @@ def test_rigid_robots_are_robots_of_one_link(dimension, rotates):
 
 def test_worlds_without_obstacles_need_no_lines():
     own = robot("snake")
-    cspace = cspace_of(World([-7.0, -7.0], [7.0, 7.0]), own)
+    cspace = CSpace(World([-7.0, -7.0], [7.0, 7.0]), own)
     safety = TabulatedSafety(cspace, COARSE, keep=False)
     drawn = states(cspace, 300)
     assert safety.answers(drawn).all() and safety.report().memory < 10
@@ -187,7 +187,7 @@ def test_worlds_without_obstacles_need_no_lines():
 def test_an_inflation_that_leaves_nothing_of_an_arena_leaves_everything_to_the_exact_test():
     cspace = crowded("spheroids", arena=True)
     small = World(cspace.world.low, cspace.world.high, (), (cspace.world.arenas[0],))
-    tight = cspace_of(small, cspace.robot, clearance=7.4)
+    tight = CSpace(small, cspace.robot, clearance=7.4)
     safety = TabulatedSafety(tight, COARSE, keep=False)
     assert table_scene(safety.tables[0].plan) is None
     assert not safety.answers(states(tight, 50)).any()

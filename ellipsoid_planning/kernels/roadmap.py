@@ -33,17 +33,20 @@ from .roadmap_tables import (
     EXHAUSTED,
     EXPANSIONS,
     FIRST_PASSAGE,
+    FIRST_REACHED,
     FREE_ENTRY,
     GOAL_REACHED,
     GROW,
     JOINED,
     KNOWN_ENDS,
+    LAST_REACHED,
     LINES,
     NODE_COLUMN,
     NODE_COST,
     NODE_ENTRY,
     NODE_LAYER,
     NODE_LEAVE,
+    NODE_NEXT,
     NODE_PARENT,
     NODE_STAMP,
     NODE_VIA,
@@ -130,6 +133,12 @@ def _reach(rm, node, parent, leave, entry, cost, via):
     rm.node_reals[node, NODE_COST] = cost
     rm.node_reals[node, NODE_ENTRY] = entry
     rm.node_reals[node, NODE_LEAVE] = leave
+    rm.node_integers[node, NODE_NEXT] = -1
+    if rm.counters[FIRST_REACHED] < 0:
+        rm.counters[FIRST_REACHED] = node
+    else:
+        rm.node_integers[rm.counters[LAST_REACHED], NODE_NEXT] = node
+    rm.counters[LAST_REACHED] = node
 
 
 @inlined
@@ -177,6 +186,7 @@ def begin(model, rm, starts, goals, axis, inflation, weight):
     rm.counters[FREE_ENTRY] = -1
     rm.counters[OPEN] = 0
     rm.counters[GOAL_REACHED] = -1
+    rm.counters[FIRST_REACHED] = rm.counters[LAST_REACHED] = -1
     rm.counters[OFFERED] = rm.counters[ENDS]
     rm.counters[KNOWN_ENDS] = rm.counters[ENDS]
     for k in range(starts.shape[0]):

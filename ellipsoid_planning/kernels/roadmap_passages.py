@@ -12,13 +12,13 @@ from .roadmap_tables import (
     END_USED,
     ENDS,
     FIRST_PASSAGE,
+    FIRST_REACHED,
     KNOWN_ENDS,
     NODE_COLUMN,
     NODE_COST,
     NODE_ENTRY,
     NODE_LAYER,
-    NODE_STAMP,
-    NODES,
+    NODE_NEXT,
     OFFERED,
     PASSAGES_USED,
     PROVED,
@@ -74,9 +74,10 @@ def offer_passages(rm, node, first, axis, goals, inflation, weight):
 def offer_new_passages(rm, axis, goals, inflation, weight):
     """Offer passages that were found since the query's last step to the nodes reached so far."""
     if rm.counters[OFFERED] < rm.counters[ENDS]:
-        for node in range(rm.counters[NODES]):
-            if rm.node_integers[node, NODE_STAMP] == rm.counters[QUERY]:
-                offer_passages(rm, node, rm.counters[OFFERED], axis, goals, inflation, weight)
+        node = rm.counters[FIRST_REACHED]
+        while node >= 0:
+            offer_passages(rm, node, rm.counters[OFFERED], axis, goals, inflation, weight)
+            node = rm.node_integers[node, NODE_NEXT]
         rm.counters[OFFERED] = rm.counters[ENDS]
 
 

@@ -5,7 +5,20 @@ import math
 from .compile import inlined, kernel
 from .containers import EMPTY, lookup, store
 from .roadmap_metric import METRIC_BALL, METRIC_CONTINUOUS, write_pose
-from .roadmap_tables import EDGES, NODE_BITS, NODE_HIGH, NODE_LOW, PROVED, REFUTED
+from .roadmap_tables import (
+    EDGE_LOWER,
+    EDGE_PROVED,
+    EDGE_STAMP,
+    EDGE_TRIED,
+    EDGE_UPPER,
+    EDGES,
+    NODE_BITS,
+    NODE_HIGH,
+    NODE_LOW,
+    PROVED,
+    QUERY,
+    REFUTED,
+)
 from .robot_model import pose_is_free, prove_way
 
 
@@ -65,14 +78,24 @@ def _set_middle(first, last, at, middle):
 
 @inlined
 def prove_edge(model, rm, a, b, entry, axis, ends):
-    """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered."""
+    """Where a proved edge leaves ``a`` and enters ``b``: (z_a, z_b, proved), remembered.
+
+    What an earlier query found out is used where this one would have tried the same motions, so
+    that it goes the same way as on an empty roadmap.
+    """
     key = (min(a, b) << NODE_BITS) | max(a, b)
-    known = lookup(rm.edges, key)
-    if known != EMPTY:
-        row = rm.edge_reals[known]
-        if a < b:
-            return row[1], row[2], row[0] > 0.0
-        return row[2], row[1], row[0] > 0.0
+    edge = lookup(rm.edges, key)
+    first_try, _, _ = crossing(rm.node_reals, a, b, entry, 0)
+    third_try, _, _ = crossing(rm.node_reals, a, b, entry, 2)
+    if edge != EMPTY:
+        row = rm.edge_reals[edge]
+        same = row[EDGE_TRIED] == first_try and row[EDGE_TRIED + 1] == third_try
+        if same or row[EDGE_STAMP] == rm.counters[QUERY]:
+            # What this query was told once, it is told again.
+            row[EDGE_STAMP] = rm.counters[QUERY]
+            if a < b:
+                return row[EDGE_LOWER], row[EDGE_UPPER], row[EDGE_PROVED] > 0.0
+            return row[EDGE_UPPER], row[EDGE_LOWER], row[EDGE_PROVED] > 0.0
     za, zb, proved = 0.0, 0.0, False
     for choice in range(4):
         za, zb, exists = crossing(rm.node_reals, a, b, entry, choice)
@@ -83,10 +106,14 @@ def prove_edge(model, rm, a, b, entry, axis, ends):
         proved = is_proved(model, rm, ends)
         if proved:
             break
-    edge = rm.counters[EDGES]
-    rm.counters[EDGES] += 1
+    if edge == EMPTY:
+        edge = rm.counters[EDGES]
+        rm.counters[EDGES] += 1
+        store(rm.edges, key, edge)
     rm.counters[PROVED if proved else REFUTED] += 1
-    rm.edge_reals[edge, 0] = 1.0 if proved else 0.0
-    rm.edge_reals[edge, 1], rm.edge_reals[edge, 2] = (za, zb) if a < b else (zb, za)
-    store(rm.edges, key, edge)
+    row = rm.edge_reals[edge]
+    row[EDGE_PROVED] = 1.0 if proved else 0.0
+    row[EDGE_LOWER], row[EDGE_UPPER] = (za, zb) if a < b else (zb, za)
+    row[EDGE_TRIED], row[EDGE_TRIED + 1] = first_try, third_try
+    row[EDGE_STAMP] = rm.counters[QUERY]
     return za, zb, proved

@@ -35,7 +35,10 @@ PASSAGES_USED = 16
 STEPS = 17
 # Ends that were known when the present query began.
 KNOWN_ENDS = 18
-COUNTERS = 19
+# The nodes that the present query reached first and last, or −1; each links to the next.
+FIRST_REACHED = 19
+LAST_REACHED = 20
+COUNTERS = 21
 
 # Node columns of the integer table
 NODE_LAYER = 0
@@ -44,7 +47,9 @@ NODE_PARENT = 2
 NODE_STAMP = 3
 # The end of the passage that led here, or −1.
 NODE_VIA = 4
-NODE_INTEGERS = 5
+# The node that the query reached after this one, or −1.
+NODE_NEXT = 5
+NODE_INTEGERS = 6
 
 # Node columns of the real table: the interval, then what the present query knows
 NODE_LOW = 0
@@ -53,6 +58,15 @@ NODE_COST = 2
 NODE_ENTRY = 3
 NODE_LEAVE = 4
 NODE_REALS = 5
+
+# Edge columns: proved (1) or refuted (0), swept coordinate at either node (the lower one first),
+# the coordinates that choices 0 and 2 of `roadmap_proofs.crossing` were, and the query that asked.
+EDGE_PROVED = 0
+EDGE_LOWER = 1
+EDGE_UPPER = 2
+EDGE_TRIED = 3
+EDGE_STAMP = 5
+EDGE_REALS = 6
 
 # Ends of passages, two a passage; the other end of ``e`` is ``e ^ 1``. First like rows of goals:
 # layer, x, y, z, column; then the passage's length, how near to the end a node of this query has
@@ -90,7 +104,7 @@ class Roadmap(NamedTuple):
         whitening, whitening_keys, scratch: cache of lines.
         lines, edges: maps (2, size) to nodes and edges.
         node_integers, node_reals: tables of the nodes.
-        edge_reals: (E, 3): proved (1) or refuted (0), swept coordinate at either node.
+        edge_reals: table of the edges.
         heap, heap_items: the open list's order.
         entry_reals: (N, 2): cost so far, swept coordinate at the parent.
         entry_integers: (N, 3): target node or −1, parent node, line of a promise.

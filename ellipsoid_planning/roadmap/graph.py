@@ -44,11 +44,11 @@ def _crossings(level: Level) -> tuple[Indices, Array]:
     table = level.tables.edges
     used = table[0] != EMPTY
     keys, rows = table[0, used], level.tables.edge_reals[table[1, used]]
-    proved = rows[:, 0] > 0.0
+    proved = rows[:, roadmap_tables.EDGE_PROVED] > 0.0
     nodes = np.column_stack(
         [keys >> roadmap_tables.NODE_BITS, keys & ((1 << roadmap_tables.NODE_BITS) - 1)]
     )
-    return nodes[proved], rows[proved, 1:]
+    return nodes[proved], rows[proved, roadmap_tables.EDGE_LOWER : roadmap_tables.EDGE_UPPER + 1]
 
 
 def _level_graph(level: Level, cspace: CSpace) -> RoadmapGraph:

@@ -97,8 +97,8 @@ class Grid:
         passing_columns, passing_layers: (≥ C,) and (≥ L,), those that only lead out of passages:
             no other column or layer has them for neighbours.
         column_count, layer_count: C and L.
-        own_layers, joined: how many layers the grid began with, and to how many of them each is
-            joined.
+        own_layers, own_columns: how many layers and columns the grid began with.
+        joined: to how many of them each layer is joined.
     """
 
     def __init__(
@@ -125,13 +125,25 @@ class Grid:
         self.orientations = _with_spare_rows(orientations, 0.0)
         self.passing_columns = np.zeros(len(self.columns), dtype=np.bool_)
         self.passing_layers = np.zeros(len(self.orientations), dtype=np.bool_)
-        self.own_layers = len(orientations)
+        self.own_layers, self.own_columns = len(orientations), len(columns)
+        self._own_column_neighbours = self.column_neighbours[: len(columns)].copy()
         if layer_neighbours is None:
             self.joined = min(neighbours, len(orientations) + QUERY_ROOM)
             layer_neighbours = np.full((len(orientations), self.joined), UNKNOWN, dtype=np.int64)
         self.joined = layer_neighbours.shape[1]
         self.layer_neighbours = _with_spare_rows(_with_room(layer_neighbours), -1)
         self._distances = np.empty(max(len(self.columns), len(self.orientations)))
+
+    def forget_added(self) -> None:
+        """Take out all columns and layers but those that the grid began with."""
+        columns, layers = self.own_columns, self.own_layers
+        self.column_count, self.layer_count = columns, layers
+        self.column_neighbours[:columns] = self._own_column_neighbours
+        self.column_neighbours[columns:] = -1
+        self.layer_neighbours[:layers, self.joined :] = -1
+        self.layer_neighbours[layers:] = -1
+        self.passing_columns[columns:] = False
+        self.passing_layers[layers:] = False
 
     def column_of(self, position: Array, axis: int, joins: bool = True) -> int:
         """The column at ``position`` (3,), added and joined to those around it if it is new.

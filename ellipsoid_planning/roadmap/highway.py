@@ -81,6 +81,7 @@ class HighwayRoadmap:
         self._weight = turn_length(cspace.robot) if chosen is None else chosen
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self._open: tuple[Array, Array] | None = None
         self.loaded = False
 
     def solve(
@@ -104,8 +105,7 @@ class HighwayRoadmap:
         if should_stop():
             return Outcome(TIMEOUT)
         best: Array | None = None
-        for finder in self.passages:
-            finder.rest()
+        self._turn_to(begin, end)
         for attempt in self._attempts(np.vstack([begin, end])):
             level = self._level(*attempt, begin, end)
             inflation = self.parameters.inflation if best is None else _LOWER_INFLATIONS[0]
@@ -115,6 +115,7 @@ class HighwayRoadmap:
                 if best is None and not self._holds(path):
                     self.clear()
                     return self.solve(starts, goals, should_stop, on_path)
+                self._open = None
                 if not self.parameters.anytime:
                     return self._solved(path, on_path)
                 best = self._better(best, path, on_path)
@@ -136,6 +137,7 @@ class HighwayRoadmap:
         self.passages = []
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self._open = None
         self.loaded = False
 
     def save(self, path: str | Path) -> None:
@@ -145,7 +147,9 @@ class HighwayRoadmap:
             RoadmapError: the file cannot be written, or is there already and no roadmap.
         """
         random = self._random.bit_generator.state
-        save(self, path, {"direct_motions": self._direct, "random": random})
+        unanswered = None if self._open is None else [ends.tolist() for ends in self._open]
+        state = {"direct_motions": self._direct, "random": random, "unanswered": unanswered}
+        save(self, path, state)
 
     @classmethod
     def load(
@@ -176,6 +180,7 @@ class HighwayRoadmap:
         stored.restore_passages(self.passages)
         stored.restore_random(self._random)
         self._direct = stored.count("direct_motions")
+        self._open = stored.unanswered()
         self.loaded = True
 
     @property
@@ -192,6 +197,14 @@ class HighwayRoadmap:
             for name, count in level.statistics.items():
                 total[name] = total.get(name, 0) + count
         return total
+
+    def _turn_to(self, starts: Array, goals: Array) -> None:
+        """Go on with a query that was asked last and not answered, or begin a new one."""
+        query = starts, goals
+        same = self._open is not None and all(map(np.array_equal, self._open, query))
+        for finder in self.passages:
+            finder.rest(forget=not same)
+        self._open = query
 
     def _attempts(self, ends: Array) -> Iterator[tuple[int, int, Box | None]]:
         """What to try for queries between ``ends`` (m, 7), in turn: (refinement, turn, box).
@@ -215,6 +228,7 @@ class HighwayRoadmap:
         else:
             level = self._new_level(refinement, axis, box)
             self.levels.append(level)
+        level.forget_earlier_query()
         if not level.passages.begun:
             level.passages.begin(starts, goals)
         for first in starts:
@@ -248,8 +262,8 @@ class HighwayRoadmap:
             lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(local.world, axis, lines)
         if has_fixed_base(self.cspace):
-            columns, neighbours = np.zeros((0, 3)), neighbours[:0]
-        layers, near = self._layers(refinement, orientations)
+            columns, neighbours = self._only_column(axis), np.full((1, neighbours.shape[1]), -1)
+        layers, near = self._layers(refinement, axis, orientations)
         joined = given.neighbour_count(dimension, articulated=len(joints) > 0)
         grid = Grid(columns, neighbours, layers, joined, joints, self._weight, near)
         guides = None
@@ -258,8 +272,15 @@ class HighwayRoadmap:
             guides = None if few else self._guides
         return Level(local, grid, axis, self._finder(local, box), refinement, box, guides)
 
+    def _only_column(self, axis: int) -> Array:
+        """The column (1, 3) of a robot whose base cannot move."""
+        home = np.zeros(self.cspace.robot.configuration_size)
+        column = self.cspace.poses(home[None])[:, :3].copy()
+        column[0, axis] = 0.0
+        return column
+
     def _layers(
-        self, refinement: int, stored: Array | None
+        self, refinement: int, axis: int, stored: Array | None
     ) -> tuple[Array, NDArray[np.int64] | None]:
         """The layers of a level (L, 4 + V), unless ``stored``, and a grid's own neighbours."""
         dimension, given = self.cspace.dimension, self.parameters
@@ -279,8 +300,11 @@ class HighwayRoadmap:
             layers = spread_orientations(dimension, count)
         if stored is not None:
             return stored, near
-        turned = random_turn(layers, dimension, self._random) if refinement > 0 else layers
-        return turned, near
+        if refinement == 0:
+            return layers, near
+        # By the level alone: the order in which queries make levels must not matter.
+        random = np.random.default_rng([given.seed, refinement, axis])
+        return random_turn(layers, dimension, random), near
 
     def _joint_layers(self, cspace: ArticulatedCSpace, refinement: int) -> Array:
         """The layers of a level for an articulated robot; finer levels go on with other ones."""

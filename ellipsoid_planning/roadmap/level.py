@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.kernels import roadmap, roadmap_path, roadmap_tables
+from ellipsoid_planning.kernels import layout, roadmap, roadmap_path, roadmap_tables
 from ellipsoid_planning.roadmap.grid import Grid
 from ellipsoid_planning.roadmap.passages import PassageFinder
 from ellipsoid_planning.roadmap.regions import Box
@@ -19,6 +19,7 @@ from ellipsoid_planning.roadmap.tables import (
     warm_up_growth,
     with_grid,
     with_passage,
+    without_added,
 )
 
 Array = NDArray[np.float64]
@@ -42,6 +43,7 @@ class Level:
         refinement: how many coarser resolutions there are.
         box: the corners (n,), (n,) of the part of the world that it covers; None for all of it.
         tables: lines, nodes and edges known so far (kernels.roadmap.Roadmap).
+        query: that to which the added columns, layers and passages belong, as ``passages`` counts.
     """
 
     def __init__(
@@ -64,7 +66,9 @@ class Level:
         self.tables = new_tables(grid, len(cspace.robot.parts))
         self._model = cspace.model
         self.passages = passages
+        self._bodies = int(cspace.scene[[layout.OBSTACLE_COUNT, layout.ARENA_COUNT]].sum())
         self._taken_in = 0
+        self.query = passages.query
         self._guides = guides
         self._burst = _FIRST_TURN
 
@@ -110,6 +114,20 @@ class Level:
         if status != roadmap_tables.SOLVED:
             return status, starts[:0]
         return self._path(goal_rows)
+
+    def forget_earlier_query(self) -> None:
+        """Take out what another query added, unless ``passages`` still looks for that one.
+
+        Lines and edges of the grid itself stay. So a query searches what it would search on an
+        empty roadmap, and goes the same way, however many came before.
+        """
+        if self.query == self.passages.query:
+            return
+        self.grid.forget_added()
+        self.tables = without_added(
+            self.tables, self.grid.own_layers, self.grid.own_columns, self._bodies
+        )
+        self._taken_in, self.query = 0, self.passages.query
 
     def _begin(
         self, start_rows: Array, goal_rows: Array, inflation: float, metric_weight: float

@@ -62,7 +62,8 @@ class PassageFinder:
 
     Attributes:
         cspace: where to look.
-        found: the passages found so far.
+        found: the passages found so far for the present query.
+        query: the present query's number.
         seeds_tried, seeds_closed: how many places were looked at, and found to leave no room.
     """
 
@@ -70,6 +71,7 @@ class PassageFinder:
         """Nothing is computed yet."""
         self.cspace = cspace
         self.found: list[Passage] = []
+        self.query = 0
         self.seeds_tried = 0
         self.seeds_closed = 0
         self._work: Iterator[None] = iter(())
@@ -87,9 +89,11 @@ class PassageFinder:
         """Whether passages are being looked for, or have been, since the last :meth:`rest`."""
         return self._begun
 
-    def rest(self) -> None:
-        """Stop looking for passages; keep those that were found."""
+    def rest(self, forget: bool = False) -> None:
+        """Stop looking for passages; ``forget`` those that were found, or keep them."""
         self._work, self._begun = iter(()), False
+        if forget:
+            self.found, self.query = [], self.query + 1
 
     def begin(self, starts: Array, goals: Array) -> None:
         """Look for what a query from ``starts`` (S, 7 + V) to ``goals`` (G, 7 + V) may need."""

@@ -119,6 +119,16 @@ class StoredRoadmap:
         """The count ``state[name]``."""
         return self._document.number(f"state.{name}", self.state)
 
+    def unanswered(self) -> tuple[Array, Array] | None:
+        """Starts (S, 7 + V) and goals (G, 7 + V) of a query that has found no path yet, or None."""
+        if self.state.get("unanswered") is None:
+            return None
+        try:
+            starts, goals = (np.array(ends, dtype=float) for ends in self.state["unanswered"])
+        except (TypeError, ValueError):
+            raise self._document.error("state.unanswered: expected starts and goals") from None
+        return starts, goals
+
     def restore_random(self, random: np.random.Generator) -> None:
         """Let ``random`` go on as the generator whose state is ``state['random']``."""
         try:

@@ -12,7 +12,7 @@ from ellipsoid_planning import array_files
 from ellipsoid_planning.array_files import Document, FileKind
 from ellipsoid_planning.errors import RoadmapError
 
-FORMAT = 1
+FORMAT = 2
 ROADMAP = FileKind("roadmap", FORMAT, RoadmapError)
 
 

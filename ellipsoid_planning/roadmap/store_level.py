@@ -36,6 +36,8 @@ _COUNTS = {
     "passages_used": roadmap_tables.PASSAGES_USED,
     "steps": roadmap_tables.STEPS,
 }
+# The number of a query before those that a roadmap counts.
+_EARLIER = -1
 _NODE_MASK = (1 << roadmap_tables.NODE_BITS) - 1
 _PLACES = [roadmap_tables.NODE_LAYER, roadmap_tables.NODE_COLUMN]
 _ENDS = [roadmap_tables.NODE_LOW, roadmap_tables.NODE_HIGH]
@@ -49,6 +51,7 @@ def level_header(level: Level) -> dict[str, Any]:
         "axis": level.axis,
         "box": None if level.box is None else [corner.tolist() for corner in level.box],
         "own_layers": level.grid.own_layers,
+        "of_last_query": level.query == level.passages.query,
         **{name: int(counters[place]) for name, place in _COUNTS.items()},
     }
 
@@ -71,7 +74,7 @@ def level_arrays(level: Level) -> dict[str, NDArray[Any]]:
         "nodes": tables.node_integers[:nodes, _PLACES],
         "intervals": tables.node_reals[:nodes, _ENDS],
         "edges": edges[0, np.argsort(edges[1])],
-        "crossings": tables.edge_reals[: edges.shape[1]],
+        "crossings": tables.edge_reals[: edges.shape[1], : roadmap_tables.EDGE_STAMP],
     }
 
 
@@ -111,6 +114,8 @@ class StoredLevel:
         level.tables = with_grid(level.tables, level.grid)
         self._fill_tables(level, level.grid)
         self._place_layers(level, model)
+        if not self._header.get("of_last_query"):
+            level.query = _EARLIER
 
     def _fill_grid(self, grid: Grid, axis: int) -> None:
         """Add columns and layers of queries and passages in the order in which they came."""
@@ -137,7 +142,7 @@ class StoredLevel:
         if np.any(intervals[:, 0] > intervals[:, 1]):
             raise self._error("intervals", "expected low and high ends")
         lines, edges = self._lines(nodes, grid), self._edges(len(nodes))
-        crossings = self._array("crossings", float, len(edges), 3)
+        crossings = self._array("crossings", float, len(edges), roadmap_tables.EDGE_STAMP)
         counters = level.tables.counters
         counters[roadmap_tables.NODES] = len(nodes)
         counters[roadmap_tables.LINES] = lines.shape[1]
@@ -147,7 +152,8 @@ class StoredLevel:
         level.tables = tables = grown(level.tables)
         tables.node_integers[: len(nodes), _PLACES] = nodes
         tables.node_reals[: len(nodes), _ENDS] = intervals
-        tables.edge_reals[: len(edges)] = crossings
+        tables.edge_reals[: len(edges), : roadmap_tables.EDGE_STAMP] = crossings
+        tables.edge_reals[: len(edges), roadmap_tables.EDGE_STAMP] = 0.0
         rehash(lines, tables.lines)
         rehash(np.vstack([edges, np.arange(len(edges))]), tables.edges)
 

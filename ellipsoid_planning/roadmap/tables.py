@@ -16,6 +16,7 @@ from ellipsoid_planning.roadmap.grid import Grid
 _ROWS = 1 << 12
 _WHITENED = 1 << 14
 _ENDS = 64
+_NODE_MASK = (1 << roadmap_tables.NODE_BITS) - 1
 
 
 def _map(size: int) -> NDArray[np.int64]:
@@ -43,7 +44,7 @@ def new_tables(grid: Grid, parts: int) -> Roadmap:
         edges=_map(2 * _ROWS),
         node_integers=np.zeros((_ROWS, roadmap_tables.NODE_INTEGERS), dtype=np.int64),
         node_reals=np.empty((_ROWS, roadmap_tables.NODE_REALS)),
-        edge_reals=np.empty((_ROWS, 3)),
+        edge_reals=np.empty((_ROWS, roadmap_tables.EDGE_REALS)),
         heap=np.empty(4 * _ROWS),
         heap_items=np.empty(4 * _ROWS, dtype=np.int64),
         entry_reals=np.empty((4 * _ROWS, 2)),
@@ -131,6 +132,61 @@ def with_passage(
     tables.end_integers[end : end + 2] = 0
     counters[roadmap_tables.ENDS] += 2
     return tables
+
+
+def without_added(
+    tables: Roadmap, layers: int, columns: int, bodies: int
+) -> Roadmap:
+    """``tables`` with nothing on layers and columns but the first ``layers`` and ``columns``.
+
+    Passages go as well. ``bodies`` is the number of obstacles and arenas.
+    """
+    used, counters = int(tables.counters[roadmap_tables.NODES]), tables.counters
+    places = tables.node_integers[:used, [roadmap_tables.NODE_LAYER, roadmap_tables.NODE_COLUMN]]
+    stays = (places < [layers, columns]).all(axis=1)
+    # One more: the first node of a line without any may be the one after the last.
+    number = np.concatenate([[0], np.cumsum(stays)])
+    count = int(number[-1])
+    tables.node_integers[:count] = tables.node_integers[:used][stays]
+    tables.node_reals[:count] = tables.node_reals[:used][stays]
+    counters[roadmap_tables.NODES] = count
+    lines = _lines_that_stay(tables.lines, layers, columns, number)
+    counters[roadmap_tables.LINES] = lines.shape[1]
+    edges, kept = _edges_that_stay(tables.edges, stays, number)
+    tables.edge_reals[: len(kept)] = tables.edge_reals[kept]
+    counters[roadmap_tables.EDGES] = len(kept)
+    for table, entries in ((tables.lines, lines), (tables.edges, edges)):
+        table[:] = EMPTY
+        rehash(entries, table)
+    # Rows of whitening are addressed by the numbers of layers, which others will have.
+    pairs = layers * tables.placed.shape[1] * bodies
+    tables.whitening_keys[tables.whitening_keys >= pairs] = EMPTY
+    counters[roadmap_tables.LAYERS_PLACED] -= np.count_nonzero(tables.ready[layers:])
+    tables.ready[layers:] = tables.usable[layers:] = False
+    counters[[roadmap_tables.ENDS, roadmap_tables.OFFERED]] = 0
+    return tables
+
+
+def _lines_that_stay(
+    table: NDArray[np.int64], layers: int, columns: int, number: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Keys and values (2, n) of lines; ``number`` tells the new numbers of nodes."""
+    layer, column = np.divmod(table[0], roadmap_tables.COLUMN_STRIDE)
+    lines = table[:, (table[0] != EMPTY) & (layer < layers) & (column < columns)]
+    first, count = np.divmod(lines[1], roadmap_tables.LINE_BASE)
+    return np.vstack([lines[0], number[first] * roadmap_tables.LINE_BASE + count])
+
+
+def _edges_that_stay(
+    table: NDArray[np.int64], stays: NDArray[np.bool_], number: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Keys and values (2, m) of edges between nodes that stay, and their old rows (m,)."""
+    edges = table[:, table[0] != EMPTY]
+    edges = edges[:, np.argsort(edges[1])]
+    first, last = edges[0] >> roadmap_tables.NODE_BITS, edges[0] & _NODE_MASK
+    kept = stays[first] & stays[last]
+    keys = (number[first] << roadmap_tables.NODE_BITS) | number[last]
+    return np.vstack([keys[kept], np.arange(np.count_nonzero(kept))]), edges[1, kept]
 
 
 def warm_up_growth() -> None:

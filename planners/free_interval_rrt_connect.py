@@ -38,13 +38,13 @@ class FreeIntervalRRTConnect(CorePlanner):
     """
 
     PARAMETERS: ClassVar[dict[str, Any]] = {
-        "range": (float, int, _OPTIONAL),
+        "range": (float, _OPTIONAL),
         "halvings": int,
         "uniform": float,
         "gate_share": float,
         "anytime": bool,
         "seed": int,
-        "metric_weight": (float, int, _OPTIONAL),
+        "metric_weight": (float, _OPTIONAL),
     }
     PARAMETER_CLASS = TreeParameters
 

@@ -49,7 +49,7 @@ class HighwayRoadmap(CorePlanner):
         "refine": int,
         "anytime": bool,
         "seed": int,
-        "metric_weight": (float, int, _OPTIONAL),
+        "metric_weight": (float, _OPTIONAL),
         "orientations": (dict, _OPTIONAL),
     }
     PARAMETER_CLASS = RoadmapParameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -44,11 +45,18 @@ _MORE_LINES = 1.6
 _MORE_LAYERS = 2.5
 # Orientations put between those of start and goal.
 _BETWEEN = 3
+# Boxes that are kept; the levels of one take a few megabytes.
+_MOST_BOXES = 32
 _LOWER_INFLATIONS = (2.0, 1.5, 1.2, 1.0)
 
 
 class HighwayRoadmap:
     """A roadmap of free intervals, built where queries look and kept for later ones.
+
+    Later queries find the lines and edges of its grids, but not what others added to them (layers
+    and columns of starts and goals, passages): each goes the way that it would go on an empty
+    roadmap, with less to compute, so that neither its path nor its cost depends on how many came
+    before. A query that was stopped goes on where it was when it is asked again next.
 
     The direct motion comes first. Then levels of growing resolution are searched until one has a
     path, which is proved motion by motion before it is given out.
@@ -81,6 +89,7 @@ class HighwayRoadmap:
         self._weight = turn_length(cspace.robot) if chosen is None else chosen
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self._forgotten: Counter[str] = Counter()
         self._open: tuple[Array, Array] | None = None
         self.loaded = False
 
@@ -137,6 +146,7 @@ class HighwayRoadmap:
         self.passages = []
         self._random = np.random.default_rng(self.parameters.seed)
         self._direct = 0
+        self._forgotten = Counter()
         self._open = None
         self.loaded = False
 
@@ -185,7 +195,7 @@ class HighwayRoadmap:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """Counts over all levels since the last :meth:`clear`."""
+        """Counts over all levels: the work since the last :meth:`clear`, and what is known now."""
         total = {
             "levels": len(self.levels),
             "direct_motions": self._direct,
@@ -196,6 +206,8 @@ class HighwayRoadmap:
         for level in self.levels:
             for name, count in level.statistics.items():
                 total[name] = total.get(name, 0) + count
+        for name, count in self._forgotten.items():
+            total[name] = total.get(name, 0) + count
         return total
 
     def _turn_to(self, starts: Array, goals: Array) -> None:
@@ -228,6 +240,7 @@ class HighwayRoadmap:
         else:
             level = self._new_level(refinement, axis, box)
             self.levels.append(level)
+            self._bound_boxes(box)
         level.forget_earlier_query()
         if not level.passages.begun:
             level.passages.begin(starts, goals)
@@ -236,6 +249,18 @@ class HighwayRoadmap:
                 for row in self._guides(first, last):
                     level.grid.layer_of(row)
         return level
+
+    def _bound_boxes(self, present: Box | None) -> None:
+        """Forget the boxes that were made first, but not the ``present`` one, beyond so many."""
+        finders = [level.passages for level in self.levels if level.box is not None]
+        boxes = list(dict.fromkeys(finders))
+        for finder in boxes[: max(len(boxes) - _MOST_BOXES, 0)]:
+            own = [level for level in self.levels if level.passages is finder]
+            if not is_same(own[0].box, present):
+                for level in own:
+                    self._forgotten.update(level.work)
+                self.levels = [level for level in self.levels if level.passages is not finder]
+                self.passages.remove(finder)
 
     def _guides(self, first: Array, last: Array) -> Array:
         """Layers that a query between two poses is likely to need, beside the grid's."""

@@ -227,12 +227,20 @@ class Level:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """Counts of what has been computed so far."""
+        """Counts of what is known, and of the work done so far."""
         counters = self.tables.counters
         return {
             "layers": int(counters[roadmap_tables.LAYERS_PLACED]),
             "lines": int(counters[roadmap_tables.LINES]),
             "intervals": int(counters[roadmap_tables.NODES]),
+            **self.work,
+        }
+
+    @property
+    def work(self) -> dict[str, int]:
+        """Counts of the work done so far."""
+        counters = self.tables.counters
+        return {
             "edges_certified": int(counters[roadmap_tables.PROVED]),
             "edges_refused": int(counters[roadmap_tables.REFUTED]),
             "expansions": int(counters[roadmap_tables.EXPANSIONS]),

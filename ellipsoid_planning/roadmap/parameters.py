@@ -86,6 +86,8 @@ class RoadmapParameters:
                 f"from {least} to {most}" if isinstance(most, int) else f"from {least} to {most:g}"
             )
             raise PlannerError(f"{name}: expected {noun} {reach}, got {shown(value)}")
+        # Kernels are compiled for one type; another would be compiled for while a query waits.
+        object.__setattr__(self, name, int(value) if kind is Integral else float(value))
 
     def layer_count(self, dimension: int, articulated: bool = False) -> int:
         """Layers of the first level in a world of ``dimension``."""

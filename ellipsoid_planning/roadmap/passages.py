@@ -187,7 +187,7 @@ class PassageFinder:
     def _known(self, pose: Array) -> bool:
         """Whether a passage found so far leads through ``pose`` (7 + V,), about."""
         for passage in self.found:
-            for known in passage.poses:
+            for known in passage.poses.copy():
                 away = float(np.linalg.norm(known[:3] - pose[:3]))
                 away += turn_length(self._joints, known[3:], pose[3:], self._reach)
                 if away < _SAME * self._reach:

@@ -68,13 +68,21 @@ class FreeIntervalRRTConnect:
 
     def clear(self) -> None:
         """Forget everything computed so far."""
-        self._random = np.random.default_rng(self.parameters.seed)
-        self._numbers = np.empty((0, tree.ROW))
         self._trees = new_trees()
         self._passages = PassageFinder(self.cspace)
         self._planted_at = 0
         self._query: tuple[Array, Array] | None = None
-        self._direct = 0
+        self._direct = self._steps_before = 0
+        self._start_again()
+
+    def _start_again(self) -> None:
+        """Draw the same numbers once more, and forget passages."""
+        self._random = np.random.default_rng(self.parameters.seed)
+        self._numbers = np.empty((0, tree.ROW))
+        self._passages.rest(forget=True)
+        # The trees take turns by the number of steps.
+        self._steps_before += int(self._trees.counters[tree_tables.STEPS])
+        self._trees.counters[tree_tables.STEPS] = 0
 
     def solve(
         self,
@@ -101,6 +109,8 @@ class FreeIntervalRRTConnect:
         if should_stop():
             return Outcome(TIMEOUT)
         if self._query is None or not all(map(np.array_equal, self._query, (begin, end))):
+            # What an earlier query drew and found must not change the way this one goes.
+            self._start_again()
             self._plant(begin, end)
         best = None
         while (path := self._search(gates, should_stop)) is not None:
@@ -124,7 +134,7 @@ class FreeIntervalRRTConnect:
         return {
             "direct_motions": self._direct,
             "passages": len(self._passages.found),
-            "steps": int(counters[tree_tables.STEPS]),
+            "steps": self._steps_before + int(counters[tree_tables.STEPS]),
             "blocked_draws": int(counters[tree_tables.BLOCKED_DRAWS]),
             "start_vertices": int(counters[0]),
             "goal_vertices": int(counters[1]),

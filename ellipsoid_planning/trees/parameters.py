@@ -61,3 +61,5 @@ class TreeParameters:
         fits = isinstance(value, kind) and not isinstance(value, bool)
         if not fits or not least <= value <= most:
             raise PlannerError(f"{name}: expected {wanted}, got {shown(value)}")
+        # Kernels are compiled for one type; another would be compiled for while a query waits.
+        object.__setattr__(self, name, int(value) if kind is Integral else float(value))

@@ -31,12 +31,17 @@ def path_length(robot: Robot, configurations: ArrayLike) -> float:
     Raises:
         GeometryError: if they are no configurations of finite numbers.
     """
+    return float(np.sum(segment_lengths(robot, configurations)))
+
+
+def segment_lengths(robot: Robot, configurations: ArrayLike) -> Array:
+    """Return OMPL's distances (m − 1,) between neighbours of a path of configurations (m, d)."""
     path = checked_configurations(configurations, robot.configuration_size)
     distances = _steps(robot, path) + _turns(robot, path)
     if isinstance(robot, ArticulatedRobot):
         for joint, weight in zip(robot.moving_joints, robot.joint_weights, strict=True):
             distances += weight * _joint_moves(joint, path[:, robot.joint_slices[joint.name]])
-    return float(np.sum(distances))
+    return np.asarray(distances)
 
 
 def base_travel(robot: Robot, configurations: ArrayLike) -> float:

@@ -19,6 +19,7 @@ from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
 
 FORMAT = 1
+TIMES = ("planning", "simplification", "total", "build", "search")
 STATUSES = ("solved", "timeout", "exhausted", "invalid_start", "invalid_goal")
 
 
@@ -86,8 +87,9 @@ class PlanResult:
         planner: the planner's name.
         status: one of `STATUSES`; "solved" exactly when there is a path.
         seed: the seed of the run, None when none was set.
-        time: seconds, "total", "build" and "search"; the latter two None when the planner
-            cannot tell them apart.
+        time: seconds: "planning", of the planner alone; "simplification", of shortening the path
+            afterwards, None if that was not done; "total", their sum; "build" and "search", parts
+            of the planning, None when the planner cannot tell them apart.
         path: the path, None when none was found.
         statistics: the planner's own counts, data that JSON can hold.
         version: the version of this package that planned.
@@ -111,7 +113,7 @@ class PlanResult:
         if self.path is not None and self.path.configurations.shape[1] != size:
             got = self.path.configurations.shape[1]
             raise ResultError(f"expected configurations of {size} numbers, got {got}")
-        time = {key: self.time.get(key) for key in ("total", "build", "search")}
+        time = {key: self.time.get(key) for key in TIMES}
         object.__setattr__(self, "time", time)
 
     @property

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.errors import ContradictionError, ResultError, ScenarioError
 from ellipsoid_planning.metric import base_travel, path_length
-from ellipsoid_planning.result import FORMAT, STATUSES, PathResult, joint_names
+from ellipsoid_planning.result import FORMAT, STATUSES, TIMES, PathResult, joint_names
 from ellipsoid_planning.robots.coordinates import limits, quaternions
 from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
@@ -64,9 +64,7 @@ class _Reader:
             raise self._error(field, error.problem) from None
 
     def _time(self, entry: Mapping[str, Any]) -> dict[str, float | None]:
-        return {
-            key: self._optional(entry, key, float, "time.") for key in ("total", "build", "search")
-        }
+        return {key: self._optional(entry, key, float, "time.") for key in TIMES}
 
     def _path(self, document: Mapping[str, Any], robot: Robot, status: str) -> PathResult | None:
         entry = self._optional(document, "path", dict)

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from ompl import base as ob
 
 
+RANGE_FRACTION = 0.025
+"""Default range of a bound planner, in units of the space's extent."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of a bound planner: the setter that takes it, and the type it wants."""
@@ -75,6 +79,8 @@ class BoundPlanner:
         from .bindings import allocate_bound_planner
 
         planner = allocate_bound_planner(self.name, si)
+        if "range" in self.parameters and "range" not in values:
+            planner.setRange(default_range(si))
         # In the table's order: BITstar samples just in time only after k-nearest is off.
         for name in (name for name in self.parameters if name in values):
             _set(self.name, name, values[name], getattr(planner, self.parameters[name].setter))
@@ -157,6 +163,15 @@ class OwnPlanner:
 
 
 PlannerEntry = BoundPlanner | OwnPlanner
+
+
+def default_range(si: ob.SpaceInformation) -> float:
+    """The longest motion that a tree planner should try, in the metric of the space of ``si``.
+
+    OMPL's own choice, a fifth of the space's extent, suits wide spaces only: among obstacles such
+    motions are seldom free, and a tree that takes shorter ones grows sooner.
+    """
+    return RANGE_FRACTION * float(si.getMaximumExtent())
 
 
 def _table(kind: type, **setters: str) -> dict[str, Parameter]:

@@ -14,6 +14,7 @@ from ompl import base as ob
 from ompl import geometric as og
 
 from ellipsoid_planning.errors import PlannerError, RoadmapError
+from ellipsoid_planning.roadmap.shorten import without_detours
 from ellipsoid_planning.roadmap.store_format import check_target
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.sizes import MOST_SECONDS
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
 
 DEFAULT_PLANNER = "HighwayRoadmap"
-SIMPLIFICATION_LIMIT = 2.0
-"""Longest time for simplifying one path [s]; it usually converges far earlier."""
+SIMPLIFICATION_FLOOR = 0.1
+"""OMPL may simplify a path for so long [s], however quickly it was found."""
 
 _Statuses = ob.PlannerStatus.PlannerStatusType
 SOLVED = _Statuses.EXACT_SOLUTION
@@ -81,22 +82,15 @@ def checked_request(
         PlannerError: unknown planner, parameter or checker, or a combination that cannot work.
         RoadmapError: no roadmap can be kept where ``roadmap`` says.
     """
-    own = dict(scenario.planner)
-    own_name = own.pop("name", DEFAULT_PLANNER)
-    entry = find_planner(own_name if planner is None else planner)
+    entry, own = chosen_planner(scenario, planner)
     if checker not in CHECKERS:
         raise PlannerError(f"checker: expected one of {', '.join(CHECKERS)}, got {checker!r}")
     if entry.needs_plugin and checker not in PLUGIN_CHECKERS:
         raise PlannerError(f"{entry.name} works with the plug-in checker only, not {checker!r}")
-    if not 0.0 < time_limit <= MOST_SECONDS:
-        raise PlannerError(
-            f"time limit: expected a positive number of seconds, at most {MOST_SECONDS:g}, "
-            f"got {time_limit!r}"
-        )
+    check_limits(time_limit, seed)
     if roadmap is not None:
         check_roadmap_file(entry, Path(roadmap))
-    values = {**(own if entry.name == own_name else {}), **(parameters or {})}
-    values = checked_parameters(entry, values)
+    values = checked_parameters(entry, {**own, **(parameters or {})})
     if isinstance(scenario.robot, ArticulatedRobot):
         entry.check_articulated(values)
     return Request(
@@ -112,6 +106,34 @@ def checked_request(
         anytime=anytime,
         roadmap=None if roadmap is None else Path(roadmap),
     )
+
+
+def chosen_planner(scenario: Scenario, planner: str | None) -> tuple[PlannerEntry, dict[str, Any]]:
+    """The planner called ``planner``, or else the scenario's own, and the scenario's parameters.
+
+    Raises:
+        PlannerError: no planner has this name.
+    """
+    own = dict(scenario.planner)
+    own_name = own.pop("name", DEFAULT_PLANNER)
+    entry = find_planner(own_name if planner is None else planner)
+    return entry, own if entry.name == own_name else {}
+
+
+def check_limits(time_limit: float, seed: int | None, option: str = "") -> None:
+    """Check a time limit [s] and a seed; ``option`` stands before their names in messages.
+
+    Raises:
+        PlannerError: no positive, finite number of seconds, or no seed of OMPL's.
+    """
+    if not 0.0 < time_limit <= MOST_SECONDS:
+        name = f"{option}time-limit" if option else "time limit"
+        raise PlannerError(
+            f"{name}: expected a positive number of seconds, at most {MOST_SECONDS:g}, "
+            f"got {time_limit!r}"
+        )
+    if seed is not None and (type(seed) is not int or not 0 <= seed < 2**32):
+        raise PlannerError(f"{option}seed: expected an integer in [0, 2**32), got {seed!r}")
 
 
 def check_roadmap_file(entry: PlannerEntry, file: Path) -> None:
@@ -178,6 +200,10 @@ def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: Request) -> No
         planner.warm_up()
     si.isValid(state)
     si.checkMotion(state, state)
+    start = request.scenario.start[None]
+    is_certified(request.cspace, np.repeat(start, 2, axis=0))
+    if request.simplify:
+        without_detours(request.cspace, np.repeat(start, 2, axis=0))
     if own:
         return
     sampler = si.allocValidStateSampler()
@@ -186,22 +212,27 @@ def _warm_up(setup: og.SimpleSetup, planner: ob.Planner, request: Request) -> No
 
 
 def simplified_path(
-    request: Request, si: ob.SpaceInformation, found: NDArray[np.float64]
+    request: Request, si: ob.SpaceInformation, found: NDArray[np.float64], planning: float
 ) -> NDArray[np.float64]:
-    """The path ``found`` (m, d) shortened by OMPL's simplification, certified if it was before.
+    """The path ``found`` (m, d) shortened, certified if it was before.
+
+    A certified path loses its detours by proved shortcuts between its states. Then OMPL's
+    simplification is given as long as the ``planning`` took [s], or `SIMPLIFICATION_FLOOR`; it
+    mostly ends far earlier.
 
     Raises:
         KeyboardInterrupt: SIGINT arrived; the simplification has returned.
     """
-    condition = bindings.stop_after(SIMPLIFICATION_LIMIT)
+    certified = is_certified(request.cspace, found)
+    if certified:
+        found = without_detours(request.cspace, found)
+    condition = bindings.stop_after(max(SIMPLIFICATION_FLOOR, planning))
     with bindings.interruptible(condition) as interruption:
         shorter = bindings.simplified(si, found, state_access(request.cspace), condition)
     if interruption.requested:
         raise KeyboardInterrupt
     # Simplification ends with a repair that moves states, and halves segments: certify again.
-    if is_certified(request.cspace, shorter) or not is_certified(request.cspace, found):
-        return shorter
-    return found
+    return shorter if not certified or is_certified(request.cspace, shorter) else found
 
 
 def planner_statistics(planner: ob.Planner) -> dict[str, Any]:

@@ -37,12 +37,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a planner came back with; ``configurations`` (m, d) only when solved."""
+    """What a planner came back with; ``configurations`` (m, d) only when solved.
+
+    ``seconds`` are the planner's own; ``simplification`` those of shortening the path, if any.
+    """
 
     status: str
     seconds: float
     configurations: NDArray[np.float64] | None
     statistics: dict[str, Any]
+    simplification: float | None = None
 
 
 def plan(
@@ -67,7 +71,8 @@ def plan(
             tables) or "fcl" (python-fcl, discrete motions).
         time_limit: for the planner alone [s].
         seed: makes the run repeat exactly with most planners; None for a different run each time.
-        simplify: shorten the path with OMPL's simplification, under the same checker.
+        simplify: shorten the path, under the same checker, for no longer than the planner took
+            (see `planners.request.simplified_path`).
         anytime: let planners that can improve their path do so until the time limit.
         parameters: of the planner; they come before those that the scenario gives for it.
         resolution: of discrete motions, see `planners.setup.install`.
@@ -96,11 +101,19 @@ def plan(
         resolution,
         roadmap,
     )
+    return answer(request)
+
+
+def answer(request: Request, ends_checked: bool = False) -> PlanResult:
+    """The result of a request; see `plan` for what it says and raises.
+
+    Start and goal are checked here unless they were before (``ends_checked``).
+    """
     for status, configuration in (
-        ("invalid_start", scenario.start),
-        ("invalid_goal", scenario.goal),
+        ("invalid_start", request.scenario.start),
+        ("invalid_goal", request.scenario.goal),
     ):
-        if not request.cspace.is_valid(configuration):
+        if not (ends_checked or request.cspace.is_valid(configuration)):
             return plan_result(request, Outcome(status, 0.0, None, {}))
     with bindings.ompl_output("silent"):
         return plan_result(request, _run(request))
@@ -135,11 +148,12 @@ def _solved(request: Request, setup: og.SimpleSetup, planner: ob.Planner) -> Out
         return Outcome(name, seconds, None, statistics)
     access = state_access(request.cspace)
     found = bindings.configurations_of_path(setup.getSolutionPath(), access)
+    simplification = None
     if request.simplify:
         began = time.perf_counter()
-        found = simplified_path(request, setup.getSpaceInformation(), found)
-        statistics["simplification_time"] = time.perf_counter() - began
-    return Outcome(name, seconds, found, statistics)
+        found = simplified_path(request, setup.getSpaceInformation(), found, seconds)
+        simplification = time.perf_counter() - began
+    return Outcome(name, seconds, found, statistics, simplification)
 
 
 def _failure(planner: str, status: str, traceback: str | None) -> PlannerError:
@@ -166,7 +180,9 @@ def plan_result(request: Request, run: Outcome) -> PlanResult:
         seed=request.seed,
         status=run.status,
         time={
-            "total": run.seconds,
+            "planning": run.seconds,
+            "simplification": run.simplification,
+            "total": run.seconds + (run.simplification or 0.0),
             "build": statistics.pop("build_time", None),
             "search": statistics.pop("search_time", None),
         },

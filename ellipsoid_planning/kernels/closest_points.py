@@ -3,9 +3,10 @@
 Gilbert, Johnson and Keerthi (1988): with the Minkowski sum's support points s(u), the
 differences c − s(u) span a polytope inside the difference of the bodies; its point v nearest to
 the origin is an upper bound |v| of the distance, and u = v/|v| proposes the next support point.
-Newton's steps on the sphere stall at needles and discs, whose support functions bend within a tiny
-angle; here the corner is reached in a few steps whatever its sharpness. As everywhere u is only proposed: the gap along it
-is taken from the bodies themselves, so that no rounding here can lengthen it.
+Newton's steps on the sphere stall at needles and discs, whose support functions bend within a
+tiny angle; here the corner is reached in a few steps whatever its sharpness. As everywhere u is
+only proposed: the gap along it is taken from the bodies themselves, so that no rounding here can
+lengthen it.
 """
 
 import math

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.metric import path_length
+from ellipsoid_planning.kernels.shortcut import shortcut
+from ellipsoid_planning.metric import path_length, segment_lengths
 
 Array = NDArray[np.float64]
 
@@ -33,11 +34,22 @@ def shorten(
     return cspace.poses(current)
 
 
+def without_detours(cspace: CSpace, configurations: Array) -> Array:
+    """Those states of a certified path (m, d), its ends among them, that proved shortcuts leave.
+
+    A path whose ends or motions do not stand the rounding stays as it is.
+    """
+    path = cspace.poses(configurations)
+    kept = np.zeros(len(path), dtype=np.bool_)
+    shortcut(cspace.model, path, kept)
+    rows = configurations[kept]
+    return rows if bool(cspace.are_motions_valid(rows[:-1], rows[1:]).all()) else configurations
+
+
 def _with_shortcut(cspace: CSpace, path: Array, first: float, last: float) -> Array | None:
     """The path with its piece between two fractions of its length replaced, or None."""
     robot = cspace.robot
-    lengths = [path_length(robot, path[k : k + 2]) for k in range(len(path) - 1)]
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    ends = np.concatenate([[0.0], np.cumsum(segment_lengths(robot, path))])
     i, a = _point_at(cspace, path, ends, first * ends[-1])
     j, b = _point_at(cspace, path, ends, last * ends[-1])
     if i == j:

@@ -134,9 +134,7 @@ def with_passage(
     return tables
 
 
-def without_added(
-    tables: Roadmap, layers: int, columns: int, bodies: int
-) -> Roadmap:
+def without_added(tables: Roadmap, layers: int, columns: int, bodies: int) -> Roadmap:
     """``tables`` with nothing on layers and columns but the first ``layers`` and ``columns``.
 
     Passages go as well. ``bodies`` is the number of obstacles and arenas.

@@ -148,9 +148,11 @@ def _evaluated(
         return _Measured(record, _properties(record))
     found = bindings.configurations_of_path(setup.getSolutionPath(), state_access(request.cspace))
     began = time.perf_counter()
-    shorter = simplified_path(request, setup.getSpaceInformation(), found)
-    record = replace(record, simplification=time.perf_counter() - began)
-    result = plan_result(request, Outcome(SOLVED, seconds, shorter, statistics))
+    shorter = simplified_path(request, setup.getSpaceInformation(), found, seconds)
+    simplification = time.perf_counter() - began
+    record = replace(record, simplification=simplification)
+    outcome = Outcome(SOLVED, seconds, shorter, statistics, simplification)
+    result = plan_result(request, outcome)
     record = _verified(record, result)
     return _Measured(record, _properties(record))
 

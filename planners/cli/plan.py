@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,11 +18,6 @@ from planners.cli.terminal import result_console, say, working, working_with_ker
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
-    from ellipsoid_planning.scenario import Scenario
-    from planners.registry import PlannerEntry
-
-
-DEFAULT_PLANNER = "HighwayRoadmap"
 
 
 class CheckerName(str, Enum):
@@ -99,25 +94,29 @@ def plan(
     ellipsoid-planning plan my.yaml --planner RRTConnect --set planner.range=5 --time-limit 30
     """
     check_outputs(output=output, csv=csv, html=html, roadmap=roadmap)
-    _check_limits(time_limit, seed)
-    parameters = planner_parameters(settings or [])
-    problem = _checked_scenario(scenario, planner, checker.value, parameters, roadmap)
-    from planners import solve
+    from ellipsoid_planning.scenario_checks import check_endpoints
+    from planners.cli.requests import checked_plan_request
+    from planners.solve import answer
 
+    request = checked_plan_request(
+        scenario,
+        planner=planner,
+        checker=checker.value,
+        time_limit=time_limit,
+        seed=seed,
+        simplify=simplify,
+        anytime=anytime,
+        parameters=planner_parameters(settings or []),
+        roadmap=roadmap,
+    )
+    problem = request.scenario
+    say_notices(problem)
+    with working_with_kernels(f"Checking start and goal of {problem.name}"):
+        check_endpoints(problem, request.cspace)
     if checker is CheckerName.tabulated:
         make_tables(problem)
     with working(f"Planning {problem.name}, for {time_limit:g} s at most"):
-        result = solve.plan(
-            problem,
-            planner=planner,
-            checker=checker.value,
-            time_limit=time_limit,
-            seed=seed,
-            simplify=simplify,
-            anytime=anytime,
-            parameters=parameters,
-            roadmap=roadmap,
-        )
+        result = answer(request, ends_checked=True)
     if result.status in ("invalid_start", "invalid_goal"):
         which = result.status.removeprefix("invalid_")
         raise problem.origin.error((which,), f"the {which} cannot be proved free; move it a little")
@@ -128,85 +127,6 @@ def plan(
     if roadmap is not None:
         say(f"Wrote {roadmap}")
     raise typer.Exit(SOLVED if result.solved else NO_PATH)
-
-
-def _checked_scenario(
-    name: str,
-    planner: str | None,
-    checker: str,
-    parameters: dict[str, Any],
-    roadmap: Path | None,
-) -> Scenario:
-    """Load the scenario and check all that can be wrong, what is quick to check first."""
-    from ellipsoid_planning.scenario import load_scenario
-    from ellipsoid_planning.scenario_checks import check_endpoints
-
-    scenario = load_scenario(name)
-    say_notices(scenario)
-    _check_planner(scenario, planner, checker, parameters, roadmap)
-    with working_with_kernels(f"Checking start and goal of {scenario.name}"):
-        check_endpoints(scenario)
-    return scenario
-
-
-def _check_planner(
-    scenario: Scenario,
-    planner: str | None,
-    checker: str,
-    parameters: dict[str, Any],
-    roadmap: Path | None,
-) -> None:
-    """Refuse what `solve.plan` would refuse, before the kernels are compiled."""
-    from ellipsoid_planning.errors import PlannerError
-    from planners.registry import checked_parameters, find_planner
-
-    own = dict(scenario.planner)
-    own_name = own.pop("name", DEFAULT_PLANNER)
-    try:
-        entry = find_planner(own_name if planner is None else planner)
-    except PlannerError as error:
-        if planner is not None:
-            raise
-        raise scenario.origin.error(("planner", "name"), str(error)) from None
-    if entry.needs_plugin and checker == CheckerName.fcl.value:
-        raise PlannerError(
-            f"{entry.name} works with the plug-in checker only; leave out --checker {checker}, "
-            "or choose an OMPL planner with --planner"
-        )
-    if roadmap is not None:
-        from planners.request import check_roadmap_file
-
-        check_roadmap_file(entry, roadmap)
-    for name, value in own.items() if entry.name == own_name else ():
-        _check_own(scenario, entry, name, value)
-    try:
-        checked_parameters(entry, parameters)
-    except PlannerError as error:
-        raise PlannerError(f"--set: {error}") from None
-
-
-def _check_own(scenario: Scenario, entry: PlannerEntry, name: str, value: object) -> None:
-    """Refuse a parameter of the scenario's planner block, with its place in the file."""
-    from ellipsoid_planning.errors import PlannerError
-    from planners.registry import checked_parameters
-
-    try:
-        checked_parameters(entry, {name: value})
-    except PlannerError as error:
-        raise scenario.origin.error(("planner", name), str(error)) from None
-
-
-def _check_limits(time_limit: float, seed: int | None) -> None:
-    from ellipsoid_planning.errors import PlannerError
-    from ellipsoid_planning.sizes import MOST_SECONDS
-
-    if not 0.0 < time_limit <= MOST_SECONDS:
-        raise PlannerError(
-            f"--time-limit: expected a positive number of seconds, at most {MOST_SECONDS:g}, "
-            f"got {time_limit:g}"
-        )
-    if seed is not None and not 0 <= seed < 2**32:
-        raise PlannerError(f"--seed: expected an integer in [0, 2**32), got {seed}")
 
 
 def _print(result: PlanResult, as_json: bool) -> None:

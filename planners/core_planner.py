@@ -47,7 +47,8 @@ class CorePlanner(ob.Planner):
     A core has ``cspace``, ``parameters``, ``statistics`` and ``compile_kernels()``.
 
     Attributes:
-        error: the traceback of an exception that ended the last solve with CRASH, or None.
+        error: why the last solve ended without an answer: the traceback of an exception (CRASH),
+            or what is wrong with the goal (UNRECOGNIZED_GOAL_TYPE); None if it did not.
     """
 
     PARAMETERS: ClassVar[dict[str, Any]]
@@ -103,6 +104,13 @@ class CorePlanner(ob.Planner):
         starts = bindings.start_configurations(self, access)
         if len(starts) == 0:
             return Statuses.INVALID_START
+        if not isinstance(self.getProblemDefinition().getGoal(), ob.GoalSampleableRegion):
+            self.error = (
+                f"{self.getName()} plans to goals that can be sampled: a GoalState, GoalStates or"
+                " another GoalSampleableRegion; a plain Goal or GoalRegion tells how far a state"
+                " is from it, but not where it is"
+            )
+            return Statuses.UNRECOGNIZED_GOAL_TYPE
         goals = bindings.goal_configurations(self, access)
         if len(goals) == 0:
             return Statuses.INVALID_GOAL

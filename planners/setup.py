@@ -112,4 +112,7 @@ def simple_setup(
     write_configuration(start, scenario.start, cspace)
     write_configuration(goal, scenario.goal, cspace)
     setup.setStartAndGoalStates(start, goal)
+    # Kernels are compiled or loaded here, and not on a planner's time.
+    si.isValid(start)
+    si.checkMotion(start, start)
     return setup

@@ -13,6 +13,9 @@ from typing import Any
 
 import numba
 import numpy as np
+from numba.core import caching, event
+
+from ellipsoid_planning.compilation import report
 
 _SOURCES = Path(__file__).resolve().parent
 _CACHE_VARIABLE = "ELLIPSOID_PLANNING_CACHE"
@@ -33,12 +36,22 @@ def _source_key() -> str:
     return digest.hexdigest()[:16]
 
 
-def _usable(folder: Path) -> bool:
+def _is_warm(folder: Path) -> bool:
+    return any(folder.rglob("*.nbc"))
+
+
+def _is_writable(folder: Path) -> bool:
+    # Asking whether one may is not enough: a mount can be read-only for its owner, too.
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
     except OSError:
         return False
-    return os.access(folder, os.W_OK)
+    return True
+
+
+def _usable(folder: Path) -> bool:
+    return _is_writable(folder) or _is_warm(folder)
 
 
 def _cache_folder() -> Path:
@@ -48,11 +61,49 @@ def _cache_folder() -> Path:
 
 
 CACHE_FOLDER = _cache_folder()
+_READ_ONLY = not _is_writable(CACHE_FOLDER)
 
 
-def is_compiled() -> bool:
-    """Whether an earlier run on this machine has left compiled kernels in the cache."""
-    return any(CACHE_FOLDER.rglob("*.nbc"))
+class _ReadOnlyLocator(caching.UserProvidedCacheLocator):  # type: ignore[misc]
+    """Numba's own insists on writing to the folder before it looks what is there."""
+
+    def ensure_cache_path(self) -> None:
+        """Leave the folder as it is."""
+
+
+def _keep_nothing(dispatcher: Any) -> None:
+    """Let versions that the cache does not have be compiled for this process alone."""
+    dispatcher._cache.save_overload = lambda signature, data: None  # noqa: ARG005
+
+
+class _Compilations(event.Listener):  # type: ignore[misc]
+    """Counts the kernels that numba compiles, and those that there are."""
+
+    def __init__(self) -> None:
+        self.known = 0
+        self._depth = self._done = 0
+
+    def on_start(self, happened: event.Event) -> None:
+        """A function is being compiled, perhaps since another one calls it."""
+        if _is_ours(happened):
+            self._depth += 1
+            report(True, self._done, self.known)
+
+    def on_end(self, happened: event.Event) -> None:
+        """A function is compiled."""
+        if _is_ours(happened):
+            self._depth -= 1
+            self._done += 1
+            report(self._depth > 0, self._done, self.known)
+
+
+def _is_ours(happened: event.Event) -> bool:
+    function = happened.data["dispatcher"].py_func
+    return bool(function.__module__.partition(".")[0] == __name__.partition(".")[0])
+
+
+_COMPILATIONS = _Compilations()
+event.register("numba:compile", _COMPILATIONS)
 
 
 def _without_literals(dispatcher: Any) -> Any:
@@ -74,13 +125,20 @@ def _without_literals(dispatcher: Any) -> Any:
 def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) -> Any:
     # The folder is read when the function is decorated; restoring it leaves other users of numba
     # in this process alone.
-    previous = numba.config.CACHE_DIR
+    _COMPILATIONS.known += inline == "never"
+    previous, locators = numba.config.CACHE_DIR, caching.CompileResultCacheImpl._locator_classes
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
+    if _READ_ONLY:
+        caching.CompileResultCacheImpl._locator_classes = [_ReadOnlyLocator]
     try:
         options = {"error_model": "numpy", "fastmath": False, "inline": inline}
-        return _without_literals(numba.njit(cache=True, nogil=nogil, **options)(function))
+        dispatcher = numba.njit(cache=True, nogil=nogil, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous
+        caching.CompileResultCacheImpl._locator_classes = locators
+    if _READ_ONLY:
+        _keep_nothing(dispatcher)
+    return _without_literals(dispatcher)
 
 
 def kernel(function: Callable[..., Any]) -> Any:

@@ -9,7 +9,7 @@ import typer
 
 from planners.cli.interrupt import INTERRUPTED, note_interrupts
 from planners.cli.sources import say_notices
-from planners.cli.terminal import say, working, working_with_kernels
+from planners.cli.terminal import say, working
 
 if TYPE_CHECKING:
     from ellipsoid_planning.scenario import Scenario
@@ -169,7 +169,7 @@ def _named_problems(names: list[str], contenders: tuple[Contender, ...]) -> tupl
     for scenario in loaded:
         say_notices(scenario)
     if loaded:
-        with working_with_kernels("Checking starts and goals"):
+        with working("Checking starts and goals"):
             for scenario in loaded:
                 check_scenario(scenario, contenders)
     return scenario_problems(loaded)

@@ -9,6 +9,7 @@ from typing import Any
 from typer.core import TyperGroup
 
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from planners.cli.compiling import telling_of_compilation
 from planners.cli.interrupt import INTERRUPTED
 from planners.cli.terminal import say
 
@@ -26,7 +27,8 @@ class CommandGroup(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
         try:
-            return super().invoke(ctx)
+            with telling_of_compilation():
+                return super().invoke(ctx)
         except EllipsoidPlanningError as error:
             say(f"Error: {error}")
             code = BAD_INPUT

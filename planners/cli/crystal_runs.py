@@ -15,7 +15,7 @@ import typer
 
 from planners.cli.interrupt import INTERRUPTED, note_interrupts
 from planners.cli.progress import progress
-from planners.cli.terminal import announce_compilation, say
+from planners.cli.terminal import say
 
 if TYPE_CHECKING:
     from ellipsoid_planning.crystal.phasing.run_store import RunStore
@@ -109,7 +109,6 @@ class Session:
         """
         from ellipsoid_planning.crystal.phasing.runs import done
 
-        announce_compilation()
         with progress(title, len(pieces)) as update:
             for _, result in done(
                 work,

@@ -9,7 +9,7 @@ import typer
 
 from planners.cli.outputs import check_outputs
 from planners.cli.sources import load_source
-from planners.cli.terminal import say, working_with_kernels
+from planners.cli.terminal import say, working
 
 
 def figure(
@@ -36,6 +36,6 @@ def figure(
     scenario, result = load_source(source)
     from planners.view import figures
 
-    with working_with_kernels("Drawing the figure"):
+    with working("Drawing the figure"):
         figures.figure(scenario if result is None else result, output)
     say(f"Wrote {output}")

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from planners.cli.sources import say_notices
-from planners.cli.terminal import result_console, working_with_kernels
+from planners.cli.terminal import result_console, working
 
 
 def joints(
@@ -46,7 +46,7 @@ def joints(
         )
     from planners.cli.joints_report import joint_tables, joints_report
 
-    with working_with_kernels(f"Analysing the joints of {scenario.name}"):
+    with working(f"Analysing the joints of {scenario.name}"):
         report = joints_report(scenario)
     if as_json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")

@@ -8,7 +8,7 @@ import typer
 
 from planners.cli.outputs import print_json
 from planners.cli.sources import say_notices
-from planners.cli.terminal import result_console, stages, working_with_kernels
+from planners.cli.terminal import result_console, stages, working
 
 MOST_LINES = 1_000_000_000
 
@@ -58,7 +58,7 @@ def measure(
     problem = load_scenario(scenario)
     say_notices(problem)
     budget = Budget(lines, half_width, time_limit)
-    with working_with_kernels(f"Loading {problem.name}"):
+    with working(f"Loading {problem.name}"):
         problem.cspace()
     with stages(f"Measuring {problem.name}") as say:
         found = measured(problem, seed, budget, on_progress=say)

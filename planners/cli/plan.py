@@ -14,7 +14,7 @@ from planners.cli.outputs import check_outputs, write_csv
 from planners.cli.safety_tables import make_tables
 from planners.cli.settings import planner_parameters
 from planners.cli.sources import say_notices
-from planners.cli.terminal import result_console, say, working, working_with_kernels
+from planners.cli.terminal import result_console, say, working
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
@@ -51,7 +51,13 @@ def plan(
     anytime: Annotated[
         bool, typer.Option("--anytime", help="Improve the path until the time limit.")
     ] = False,
-    seed: Annotated[int | None, typer.Option(help="Make the run repeatable.")] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            help="Make the run repeatable. [dim]PRM and PRMstar search in two threads, and can "
+            "differ all the same.[/dim]"
+        ),
+    ] = None,
     simplify: Annotated[bool, typer.Option(help="Shorten the path afterwards.")] = True,
     output: Annotated[
         Path | None, typer.Option(metavar="FILE.json", help="Write the result.")
@@ -111,7 +117,7 @@ def plan(
     )
     problem = request.scenario
     say_notices(problem)
-    with working_with_kernels(f"Checking start and goal of {problem.name}"):
+    with working(f"Checking start and goal of {problem.name}"):
         check_endpoints(problem, request.cspace)
     if checker is CheckerName.tabulated:
         make_tables(problem)

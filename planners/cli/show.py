@@ -9,7 +9,7 @@ import typer
 
 from planners.cli.outputs import check_outputs
 from planners.cli.sources import load_source
-from planners.cli.terminal import say, working_with_kernels
+from planners.cli.terminal import say, working
 
 
 def show(
@@ -41,7 +41,7 @@ def show(
     from planners.cli.pages import scene_page
     from planners.view.meshcat_page import open_in_browser, write_page
 
-    with working_with_kernels("Drawing the page"):
+    with working("Drawing the page"):
         page = scene_page(scenario, result)
     if html is not None and not open_:
         write_page(page, html)

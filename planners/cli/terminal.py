@@ -61,19 +61,3 @@ def stages(message: str) -> Iterator[Callable[[str], None]]:
 
     with Console(stderr=True).status(message) as status:
         yield status.update
-
-
-@contextmanager
-def working_with_kernels(message: str) -> Iterator[None]:
-    """As `working`, preceded by a word of explanation when kernels must be compiled first."""
-    announce_compilation()
-    with working(message):
-        yield
-
-
-def announce_compilation() -> None:
-    """Say why the work will take longer, when kernels must be compiled first."""
-    from ellipsoid_planning.kernels.compile import is_compiled
-
-    if not is_compiled():
-        say("Compiling the kernels for this machine, once; it takes about half a minute.")

@@ -7,7 +7,8 @@ keyed by a hash of all kernel sources and of the numba and numpy versions.
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,10 @@ CACHE_FOLDER = _cache_folder()
 _READ_ONLY = not _is_writable(CACHE_FOLDER)
 
 
+# Where numba looks for a folder for a function's cache.
+_IMPLEMENTATION, _LOCATORS = caching.CompileResultCacheImpl, "_locator_classes"
+
+
 class _ReadOnlyLocator(caching.UserProvidedCacheLocator):  # type: ignore[misc]
     """Numba's own insists on writing to the folder before it looks what is there."""
 
@@ -73,7 +78,7 @@ class _ReadOnlyLocator(caching.UserProvidedCacheLocator):  # type: ignore[misc]
 
 def _keep_nothing(dispatcher: Any) -> None:
     """Let versions that the cache does not have be compiled for this process alone."""
-    dispatcher._cache.save_overload = lambda signature, data: None  # noqa: ARG005
+    dispatcher._cache.save_overload = lambda signature, data: None  # noqa: ARG005, SLF001
 
 
 class _Compilations(event.Listener):  # type: ignore[misc]
@@ -86,20 +91,38 @@ class _Compilations(event.Listener):  # type: ignore[misc]
     def on_start(self, happened: event.Event) -> None:
         """A function is being compiled, perhaps since another one calls it."""
         if _is_ours(happened):
-            self._depth += 1
-            report(True, self._done, self.known)
+            self.begin()
 
     def on_end(self, happened: event.Event) -> None:
         """A function is compiled."""
         if _is_ours(happened):
-            self._depth -= 1
-            self._done += 1
-            report(self._depth > 0, self._done, self.known)
+            self.end(1)
+
+    def begin(self) -> None:
+        """Take note of a compilation that begins."""
+        self._depth += 1
+        report(True, self._done, self.known)
+
+    def end(self, count: int) -> None:
+        """Take note of one that has ended, of ``count`` functions."""
+        self._depth -= 1
+        self._done += count
+        report(self._depth > 0, self._done, self.known)
 
 
 def _is_ours(happened: event.Event) -> bool:
     function = happened.data["dispatcher"].py_func
     return bool(function.__module__.partition(".")[0] == __name__.partition(".")[0])
+
+
+@contextmanager
+def compiling_elsewhere() -> Iterator[None]:
+    """Report that a compilation goes on while the block waits for another process that compiles."""
+    _COMPILATIONS.begin()
+    try:
+        yield
+    finally:
+        _COMPILATIONS.end(0)
 
 
 _COMPILATIONS = _Compilations()
@@ -126,16 +149,16 @@ def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) ->
     # The folder is read when the function is decorated; restoring it leaves other users of numba
     # in this process alone.
     _COMPILATIONS.known += inline == "never"
-    previous, locators = numba.config.CACHE_DIR, caching.CompileResultCacheImpl._locator_classes
+    previous, locators = numba.config.CACHE_DIR, getattr(_IMPLEMENTATION, _LOCATORS)
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     if _READ_ONLY:
-        caching.CompileResultCacheImpl._locator_classes = [_ReadOnlyLocator]
+        setattr(_IMPLEMENTATION, _LOCATORS, [_ReadOnlyLocator])
     try:
         options = {"error_model": "numpy", "fastmath": False, "inline": inline}
         dispatcher = numba.njit(cache=True, nogil=nogil, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous
-        caching.CompileResultCacheImpl._locator_classes = locators
+        setattr(_IMPLEMENTATION, _LOCATORS, locators)
     if _READ_ONLY:
         _keep_nothing(dispatcher)
     return _without_literals(dispatcher)

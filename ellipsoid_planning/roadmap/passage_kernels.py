@@ -24,7 +24,7 @@ from ellipsoid_planning.kernels import (
     passages,
     validity,
 )
-from ellipsoid_planning.kernels.compile import CACHE_FOLDER
+from ellipsoid_planning.kernels.compile import CACHE_FOLDER, compiling_elsewhere
 from ellipsoid_planning.kernels.roadmap_metric import turn_length
 from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
 from ellipsoid_planning.roadmap.gates import GateFinder, probe
@@ -93,7 +93,8 @@ def compiling_aside(articulated: bool) -> Iterator[None]:
     try:
         yield
         if process is not None:
-            process.wait(_LONGEST)
+            with compiling_elsewhere():
+                process.wait(_LONGEST)
     except BaseException:
         if process is not None:
             process.kill()

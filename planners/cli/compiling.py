@@ -1,4 +1,4 @@
-"""Compilation is announced, whatever command sets it off, and its progress shown; once a machine."""
+"""Compilation is announced, whatever command sets it off, and its progress shown."""
 
 from __future__ import annotations
 

@@ -1,9 +1,11 @@
 """Messages and progress go to stderr."""
 
-import pytest
+import threading
 
-from ellipsoid_planning.kernels import compile as kernels_compile
-from planners.cli.terminal import working, working_with_kernels
+from ellipsoid_planning.compilation import report
+from planners.cli import compiling
+from planners.cli.compiling import telling_of_compilation
+from planners.cli.terminal import working
 
 
 def test_progress_is_a_line_on_stderr_when_nobody_watches(capsys):
@@ -12,11 +14,28 @@ def test_progress_is_a_line_on_stderr_when_nobody_watches(capsys):
     assert capsys.readouterr() == ("", "Thinking ...\n")
 
 
-@pytest.mark.parametrize("compiled", [True, False])
-def test_the_first_run_says_that_kernels_are_compiled(compiled, capsys, monkeypatch):
-    monkeypatch.setattr(kernels_compile, "is_compiled", lambda: compiled)
-    with working_with_kernels("Thinking"):
-        pass
+def test_compilation_is_announced_once_with_its_progress(capsys, monkeypatch):
+    said, inner = threading.Event(), compiling.say
+
+    def say(message):
+        inner(message)
+        if "functions compiled" in message:
+            said.set()
+
+    monkeypatch.setattr(compiling, "EVERY", 0.01)
+    monkeypatch.setattr(compiling, "say", say)
+    with telling_of_compilation():
+        report(True, 0, 9)
+        report(True, 3, 9)
+        assert said.wait(60)
+    report(True, 4, 9)  # nobody listens any more
     out, errors = capsys.readouterr()
     assert out == ""
-    assert ("Compiling the kernels" in errors) is not compiled
+    assert errors.count("Compiling the kernels") == 1
+    assert "of at most 9 functions compiled" in errors
+
+
+def test_nothing_is_said_where_nothing_is_compiled(capsys):
+    with telling_of_compilation():
+        pass
+    assert capsys.readouterr() == ("", "")

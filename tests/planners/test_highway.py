@@ -230,3 +230,20 @@ def test_benchmark_runs_it_beside_ompl_s_planners(tmp_path, monkeypatch):
 def test_hundreds_of_plans_leave_nothing():
     scenario = scenario_of("planar")
     assert growth(lambda: plan(scenario, "HighwayRoadmap", seed=1), 500) < 10_000
+
+
+class Near(ob.GoalRegion):
+    """Tells how far a state is from a place, and no more."""
+
+    def distanceGoal(self, state):  # noqa: N802
+        return abs(state.getX())
+
+
+def test_a_goal_that_cannot_be_sampled_is_named():
+    cspace = scenario_of("planar").cspace()
+    setup, planner = own_setup(cspace, [[-6.0, 0.0, 0.0]], [[6.0, 0.0, 1.0]])
+    setup.setGoal(Near(setup.getSpaceInformation()))
+    status = setup.solve(5.0).getStatus()
+    assert status == Statuses.UNRECOGNIZED_GOAL_TYPE
+    assert "GoalRegion" in planner.error
+    assert "GoalStates" in planner.error

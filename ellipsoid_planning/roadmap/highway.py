@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.articulated import ArticulatedCSpace
 from ellipsoid_planning.cspace.space import CSpace
-from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.kernels.grid import between
 from ellipsoid_planning.kernels.robot_model import ways_are_free
@@ -25,11 +24,9 @@ from ellipsoid_planning.roadmap.joint_layers import (
     has_fixed_base,
     home_configuration,
     layer_metric,
-    spread_layers,
 )
-from ellipsoid_planning.roadmap.layer_grids import MOST_LAYERS, grid_layers
 from ellipsoid_planning.roadmap.level import Level
-from ellipsoid_planning.roadmap.orientations import random_turn, spread_orientations
+from ellipsoid_planning.roadmap.own_layers import only_column, own_layers
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 from ellipsoid_planning.roadmap.passage_kernels import compile_passage_kernels, compiling_aside
 from ellipsoid_planning.roadmap.passages import PassageFinder
@@ -40,9 +37,8 @@ from ellipsoid_planning.roadmap.store_level import StoredLevel
 
 Array = NDArray[np.float64]
 
-# A finer level has this many times the lines along a side, and this many times the layers.
+# A finer level has this many times the lines along a side.
 _MORE_LINES = 1.6
-_MORE_LAYERS = 2.5
 # Orientations put between those of start and goal.
 _BETWEEN = 3
 # Boxes that are kept; the levels of one take a few megabytes.
@@ -287,8 +283,11 @@ class HighwayRoadmap:
             lines = min(round(lines * _MORE_LINES**refinement), max(lines, most_lines(dimension)))
         columns, neighbours = grid_columns(local.world, axis, lines)
         if has_fixed_base(self.cspace):
-            columns, neighbours = self._only_column(axis), np.full((1, neighbours.shape[1]), -1)
-        layers, near = self._layers(refinement, axis, orientations)
+            columns, neighbours = (
+                only_column(self.cspace, axis),
+                np.full((1, neighbours.shape[1]), -1),
+            )
+        layers, near = own_layers(self.cspace, given, refinement, axis, orientations)
         joined = given.neighbour_count(dimension, articulated=len(joints) > 0)
         grid = Grid(columns, neighbours, layers, joined, joints, self._weight, near)
         guides = None
@@ -296,46 +295,6 @@ class HighwayRoadmap:
             few = has_few_angles(self.cspace.articulated)
             guides = None if few else self._guides
         return Level(local, grid, axis, self._finder(local, box), refinement, box, guides)
-
-    def _only_column(self, axis: int) -> Array:
-        """The column (1, 3) of a robot whose base cannot move."""
-        home = np.zeros(self.cspace.robot.configuration_size)
-        column = self.cspace.poses(home[None])[:, :3].copy()
-        column[0, axis] = 0.0
-        return column
-
-    def _layers(
-        self, refinement: int, axis: int, stored: Array | None
-    ) -> tuple[Array, NDArray[np.int64] | None]:
-        """The layers of a level (L, 4 + V), unless ``stored``, and a grid's own neighbours."""
-        dimension, given = self.cspace.dimension, self.parameters
-        finer = _MORE_LAYERS**refinement
-        if isinstance(self.cspace, ArticulatedCSpace):
-            if given.orientations is not None:
-                raise PlannerError("orientations: robots with joints have layers of their own")
-            layers = self._joint_layers(self.cspace, refinement) if stored is None else stored
-            return layers, None
-        if not self.cspace.rotates:
-            return np.empty((0, 4)), None
-        near = None
-        if given.orientations is not None:
-            layers, near = grid_layers(dimension, given.orientations, finer)
-        else:
-            count = min(round(given.layer_count(dimension) * finer), MOST_LAYERS)
-            layers = spread_orientations(dimension, count)
-        if stored is not None:
-            return stored, near
-        if refinement == 0:
-            return layers, near
-        # By the level alone: the order in which queries make levels must not matter.
-        random = np.random.default_rng([given.seed, refinement, axis])
-        return random_turn(layers, dimension, random), near
-
-    def _joint_layers(self, cspace: ArticulatedCSpace, refinement: int) -> Array:
-        """The layers of a level for an articulated robot; finer levels go on with other ones."""
-        count = self.parameters.layer_count(cspace.dimension, articulated=True)
-        counts = [min(round(count * _MORE_LAYERS**k), MOST_LAYERS) for k in range(refinement + 1)]
-        return spread_layers(cspace, counts[-1], sum(counts[:-1]))
 
     def _finder(self, cspace: CSpace, box: Box | None) -> PassageFinder:
         """The finder of passages in a box, which the box's levels share."""

@@ -141,7 +141,7 @@ def without_added(tables: Roadmap, layers: int, columns: int, bodies: int) -> Ro
     """
     used, counters = int(tables.counters[roadmap_tables.NODES]), tables.counters
     places = tables.node_integers[:used, [roadmap_tables.NODE_LAYER, roadmap_tables.NODE_COLUMN]]
-    stays = (places < [layers, columns]).all(axis=1)
+    stays = np.all(places < [layers, columns], axis=1)
     # One more: the first node of a line without any may be the one after the last.
     number = np.concatenate([[0], np.cumsum(stays)])
     count = int(number[-1])

@@ -83,29 +83,33 @@ def progress(message: str) -> None:
     sys.stderr.flush()
 
 
-def by_collisions(model: PackingModel, best: int) -> tuple[Candidates, int]:
-    """Candidates from the grid's free arrangements, and how many these are."""
+def by_collisions(model: PackingModel, best: int) -> tuple[Candidates, int, float]:
+    """Candidates from the grid's free arrangements, how many these are, and the search's time."""
+    began = time.perf_counter()
     search, numbers = free_numbers(model)
+    seconds = time.perf_counter() - began
 
     def candidates(cost: FourierCost) -> np.ndarray:
         # The grid may be another than that of the model whose cost it is.
         ranker = Ranker(search, replace(cost, model=model))
         return ranker.rank(numbers, best).configurations
 
-    return candidates, len(numbers)
+    return candidates, len(numbers), seconds
 
 
-def by_potential(model: PackingModel, spread: float, best: int) -> tuple[Candidates, int]:
-    """Candidates from the minima of GCF with m_b = ``spread``, and how many these are."""
+def by_potential(model: PackingModel, spread: float, best: int) -> tuple[Candidates, int, float]:
+    """Candidates from the minima of GCF with m_b = ``spread``, as `by_collisions`."""
     from ellipsoid_planning.crystal.packing.gaussian_mixture import GaussianMixture
     from ellipsoid_planning.crystal.packing.potential_candidates import candidates_by_potential
 
+    began = time.perf_counter()
     kept = candidates_by_potential(model, GaussianMixture(spread)).kept
+    seconds = time.perf_counter() - began
 
     def candidates(cost: FourierCost) -> np.ndarray:
         return kept[np.argsort(cost.values(kept), kind="stable")[:best]]
 
-    return candidates, len(kept)
+    return candidates, len(kept), seconds
 
 
 def run(
@@ -211,7 +215,7 @@ def table_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     ]
     targets = table_3_2(model)
     methods = {"both": METHODS["both"]}
-    for title, (candidates, _) in sources.items():
+    for title, (candidates, _, _) in sources.items():
         found[f"table, {title}"] = [
             run_trial(model, target, candidates, methods, given.noise) for target in targets
         ]
@@ -223,15 +227,16 @@ def table_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     return found
 
 
-def _planar_sources(model: PackingModel, best: int) -> dict[str, tuple[Candidates, int]]:
+def _planar_sources(model: PackingModel, best: int) -> dict[str, tuple[Candidates, int, float]]:
+    """Candidates of several kinds; what they are made in counts once, not for each target."""
     found = {}
     for step in GRIDS_DEG:
         one = by_collisions(with_step(model, step), best)
-        found[f"grid of {step:g}°, {one[1]} free"] = one
+        found[f"grid of {step:g}°, {one[1]} free, made in {one[2]:.2g} s"] = one
     try:
         for spread in SPREADS:
             one = by_potential(model, spread, best)
-            found[f"m_b = {spread:g}, {one[1]} free minima"] = one
+            found[f"m_b = {spread:g}, {one[1]} free minima, made in {one[2]:.2g} s"] = one
     except ImportError:
         progress("no candidates by potential here")
     return found
@@ -242,7 +247,7 @@ def plane_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
     model = load_model("rabbit-plane")
     targets = random_targets(model, given.targets or COUNTS["plane"], given.seed)
     found = {}
-    for title, (candidates, _) in _planar_sources(model, given.candidates).items():
+    for title, (candidates, _, _) in _planar_sources(model, given.candidates).items():
         trials = run(f"plane, {title}", model, targets, candidates, given)
         print(summary(f"Plane, {title}", trials), wrong_minima(trials, given.noise), flush=True)
         found[f"plane, {title}"] = trials
@@ -252,12 +257,12 @@ def plane_part(given: argparse.Namespace) -> dict[str, list[Trial]]:
 def space_part(name: str, given: argparse.Namespace) -> dict[str, list[Trial]]:
     """Random targets of a spatial rabbit."""
     model = load_model(f"rabbit-{name}")
-    began = time.perf_counter()
-    candidates, count = by_collisions(model, given.candidates)
-    progress(f"{name}: {count} free of {model.grid.count}, {time.perf_counter() - began:.1f} s")
+    candidates, count, seconds = by_collisions(model, given.candidates)
+    progress(f"{name}: {count} free of {model.grid.count}, made in {seconds:.2g} s")
     targets = random_targets(model, given.targets or COUNTS[name], given.seed)
     trials = run(name, model, targets, candidates, given)
-    print(summary(model.name, trials), wrong_minima(trials, given.noise))
+    title = f"{model.name}, {count} free, made in {seconds:.2g} s"
+    print(summary(title, trials), wrong_minima(trials, given.noise))
     print(on_grid(model, candidates, given), flush=True)
     return {name: trials}
 

@@ -26,10 +26,7 @@ from ellipsoid_planning.crystal.packing.grid_search import GridSearch
 from ellipsoid_planning.crystal.packing.model import PackingModel
 from ellipsoid_planning.crystal.packing.model_build import model_of, target_of
 from ellipsoid_planning.crystal.packing.model_files import locate_model
-from ellipsoid_planning.crystal.phasing.arrangement_errors import (
-    ArrangementErrors,
-    arrangement_errors,
-)
+from ellipsoid_planning.crystal.phasing.arrangement_errors import arrangement_errors
 from ellipsoid_planning.crystal.structures.calculated import calculated_factors, write_mtz
 from ellipsoid_planning.crystal.structures.domains import parse_domain
 from ellipsoid_planning.crystal.structures.fitted_model import FittedModel, SearchSteps
@@ -72,12 +69,6 @@ def cost_of(
     return FourierCost(model, magnitudes, scaled=True), len(magnitudes)
 
 
-def off(model: PackingModel, errors: ArrangementErrors, target: np.ndarray) -> float:
-    """Root mean square distance [Å] of the ellipsoids' centres."""
-    centres = [model.molecule.placed(q)[0] for q in (errors.configuration, target)]
-    return float(np.sqrt(np.mean(np.sum((centres[0] - centres[1]) ** 2, axis=1))))
-
-
 def row(
     structure: CrystalStructure, parts: int, solvent: bool, resolution: float, best: int
 ) -> str:
@@ -88,9 +79,7 @@ def row(
     ranking = rank_free(GridSearch(model), cost, best=best, workers=2)
     outcome = phase_candidates(cost, ranking.configurations, Refinement(method="polish"))
     seconds = time.perf_counter() - began
-    distances = [
-        off(model, arrangement_errors(model, q, target), target) for q in ranking.configurations
-    ]
+    distances = [arrangement_errors(model, q, target).distance for q in ranking.configurations]
     near = np.flatnonzero(np.array(distances) < NEAR)
     errors = arrangement_errors(model, outcome.configuration, target)
     cells = (
@@ -103,7 +92,7 @@ def row(
         f"{ranking.costs[0] / cost.norm:.3f}",
         str(near[0] + 1) if len(near) else f"> {best}",
         f"{outcome.best.refined.cost / cost.norm:.3f}",
-        f"{off(model, errors, target):.1f} Å",
+        f"{errors.distance:.1f} Å",
         f"{errors.mean_shift:.1f} Å",
         f"{errors.mae_deg:.1f}°",
         f"{seconds:.0f}",

@@ -13,29 +13,33 @@ UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 LARGEST = 1 << 30  # bytes, far more than any entry of the archive has
 
 
-def read_content(path: str | Path) -> bytes:
+def read_content(path: str | Path, most: int | None = None) -> bytes:
     """Read a file whole; one that is compressed by gzip is unpacked, whatever its name.
 
     A byte-order mark is taken off, and text of UTF-16 becomes UTF-8.
 
+    Args:
+        path: the file.
+        most: bytes that are read at most, `LARGEST` by default.
+
     Raises:
         ScenarioError: it is no regular file, cannot be read or unpacked, or is enormous.
     """
-    file = Path(path)
+    file, limit = Path(path), most or LARGEST
     _check_regular(file)
     try:
         with file.open("rb") as stream:
             packed = stream.read(len(GZIP)) == GZIP
         with gzip.open(file) if packed else file.open("rb") as source:
-            content = source.read(LARGEST + 1)  # a small file may unpack to any size
+            content = source.read(limit + 1)  # a small file may unpack to any size
     except OSError as error:
         problem = f"cannot read the file: {error.strerror or error}"
         raise ScenarioError(problem, file=str(path)) from None
     except (EOFError, zlib.error) as error:
         problem = f"cannot unpack the file: {error}; it is damaged, get it again"
         raise ScenarioError(problem, file=str(path)) from None
-    if len(content) > LARGEST:
-        raise ScenarioError(f"expected a file of at most {LARGEST:,} bytes", file=str(path))
+    if len(content) > limit:
+        raise ScenarioError(f"expected a file of at most {limit:,} bytes", file=str(path))
     return _without_mark(content, str(path))
 
 

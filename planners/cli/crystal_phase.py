@@ -152,7 +152,8 @@ def phase(
     the grid, configuration, cost, errors), refined (what became of them), threshold (a cost),
     target, refine, model, group, keys, fingerprint, seed, time (search, refinement and total, in
     seconds, of this session) and version. Errors: E_h (of the motion), MAE_deg and E_max_deg (of
-    angles), MAE_shifts.
+    angles), MAE_shifts, RMSD_centres (root mean square distance of the bodies' centres from the
+    target's), lengths in the model's unit.
 
     [dim]Exit codes: 0 found, 1 not found, 2 bad input, 130 interrupted.[/dim]
 

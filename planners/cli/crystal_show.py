@@ -125,7 +125,7 @@ def _found(model: PackingModel, file: str) -> NDArray[np.float64]:
         raise ResultError(f"{file}: cannot read the file: {error.strerror}") from None
     except CrystalError as error:
         raise ResultError(f"{file}: it is another model's result: {error}") from None
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         raise ResultError(
             f"{file}: expected a result that crystal phase wrote, with an arrangement; give one, "
             "or a target's YAML file"

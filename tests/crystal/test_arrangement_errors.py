@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from ellipsoid_planning.crystal.packing.model import load_model
+from ellipsoid_planning.crystal.packing.model import load_model, load_target
 from ellipsoid_planning.crystal.phasing.arrangement_errors import (
     arrangement_errors,
     motion_error,
@@ -116,3 +116,19 @@ def test_angles_across_the_pole_are_near(euler):
     assert motion_error(model, found, [0.5, pole - 0.02, 0.3])[0] < 1e-12
     errors = arrangement_errors(model, found, target)
     assert errors.e_max_deg == pytest.approx(math.degrees(0.04))
+
+
+def test_the_distance_of_centres_is_that_of_a_shift():
+    model = load_model("rabbit-p212121")
+    target = load_target("rabbit-p212121-target", model)
+    moved = target.copy()
+    moved[:3] += [0.3, -0.4, 1.2]  # along x, y and z
+    errors = plain_errors(model, moved, target)
+    assert errors.distance == pytest.approx(1.3)
+    assert errors.to_dict()["RMSD_centres"] == errors.distance
+    turned = target.copy()
+    turned[model.keys.index("alpha_deg")] += 0.1  # the ears move, the face does not
+    centres = [model.molecule.placed(q)[0] for q in (turned, target)]
+    away = np.linalg.norm(centres[0] - centres[1], axis=1)
+    assert plain_errors(model, turned, target).distance == pytest.approx(np.sqrt((away**2).mean()))
+    assert away.min() == 0.0 < away.max()

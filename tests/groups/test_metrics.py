@@ -5,9 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from ellipsoid_planning.errors import GridError
 from ellipsoid_planning.groups import (
     cyclic,
     euler_grid,
+    grid_by_name,
+    grid_names,
     group_grid,
     hopf_grid,
     icosahedral,
@@ -128,3 +131,21 @@ def test_the_600_cell_grid_beats_the_fields_at_any_count(divisions):
             scale = (grid.count / other.count) ** (1 / 3)
             assert apart > 1.1 * separation(other) / scale
             assert covering < probed_radius(other, 30_000) / scale
+
+
+def test_which_grid_is_the_most_even_for_its_number_of_rotations():
+    """What the help of ``rotations`` says of the 600-cell, for grids of hundreds of rotations."""
+    spread = {}
+    for name in grid_names():
+        for count in (420, 480, 540, 576, 648):
+            try:
+                made = grid_by_name(name, count=count)
+            except GridError:
+                continue
+            measured, share = measure(made), count ** (1.0 / 3.0)
+            spread[name, count] = measured.separation * share, measured.covering * share
+    apart, close = spread.pop(("600-cell", 420))
+    assert len(spread) > 8
+    assert all(other < apart for other, _ in spread.values())
+    closer = [key for key, (_, other) in spread.items() if other < close]
+    assert closer == [("octahedral-bcc", 648)]

@@ -71,7 +71,7 @@ def _parsed(file: str, content: bytes) -> Any:
         try:
             return library.read_mtz_file(str(beside))
         except (RuntimeError, OSError, ValueError, MemoryError) as error:
-            told = str(error).replace(str(beside), "it")
+            told = str(error).removesuffix(f": {beside}")
             raise ScenarioError(f"this is no readable MTZ file: {told}", file=file) from None
 
 

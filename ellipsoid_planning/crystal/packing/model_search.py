@@ -29,7 +29,7 @@ ORIENTATION: Path = ("search", "orientation")
 ANGLE_KEYS = ("yaw_deg", *(f"{name}_deg" for name in EULER_NAMES))
 
 MOST_POSES = 10**7  # of the base: a table has them all
-MOST_ARRANGEMENTS = 10**18  # their numbers are of 64 bits
+MOST_ARRANGEMENTS = 10**14  # weeks of a core; their numbers stay exact as floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,6 +30,7 @@ class ArrangementErrors:
         mean_turn: MAE of the angles [rad], 0 if there are none.
         largest_turn: E_max [rad].
         mean_shift: MAE₂, of the shifts [length], None if the model has none.
+        distance: root mean square of how far the bodies' centres are away [length].
     """
 
     configuration: Array
@@ -39,6 +40,7 @@ class ArrangementErrors:
     mean_turn: float
     largest_turn: float
     mean_shift: float | None
+    distance: float
 
     @property
     def mae_deg(self) -> float:
@@ -51,13 +53,14 @@ class ArrangementErrors:
         return math.degrees(self.largest_turn)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain numbers under the thesis' names, angles in degrees."""
+        """Plain numbers, under the thesis' names where it has them; angles in degrees."""
         return {
             "E_h": self.motion,
             "E_h_turns": self.turning,
             "MAE_deg": self.mae_deg,
             "E_max_deg": self.e_max_deg,
             "MAE_shifts": self.mean_shift,
+            "RMSD_centres": self.distance,
             "isometry": self.isometry,
         }
 
@@ -108,7 +111,13 @@ def plain_errors(
         float(angles.mean()) if len(angles) else 0.0,
         float(angles.max()) if len(angles) else 0.0,
         float(shifts.mean()) if len(shifts) else None,
+        _centre_distance(model, configuration, target),
     )
+
+
+def _centre_distance(model: PackingModel, first: Array, second: Array) -> float:
+    centres = [model.molecule.placed(q)[0] for q in (first, second)]
+    return float(np.sqrt(np.mean(np.sum((centres[0] - centres[1]) ** 2, axis=1))))
 
 
 def _differences(model: PackingModel, first: Array, second: Array) -> tuple[Array, Array]:

@@ -27,7 +27,7 @@ def check_cell(name: str, rotations: NDArray[np.int64], cell: UnitCell) -> None:
             f"{name}: expected a cell in {dimension} dimensions, got one in {cell.dimension}"
         )
     moved = rotations.transpose(0, 2, 1) @ cell.metric @ rotations
-    scale = np.sqrt(np.outer(np.diag(cell.metric), np.diag(cell.metric)))
+    scale = np.outer(cell.lengths, cell.lengths)
     errors = np.max(np.abs(moved - cell.metric) / scale, axis=(1, 2))
     if np.max(errors) <= TOLERANCE:
         return
@@ -46,7 +46,8 @@ def fitted_cell(rotations: NDArray[np.int64], cell: UnitCell) -> UnitCell:
     digits.
     """
     metric = np.mean(rotations.transpose(0, 2, 1) @ cell.metric @ rotations, axis=0)
-    scale = np.sqrt(np.outer(np.diag(metric), np.diag(metric)))
+    lengths = np.sqrt(np.diag(metric))
+    scale = np.outer(lengths, lengths)
     if np.max(np.abs(metric - cell.metric) / scale) <= ROUNDING:
         return cell
     upright = np.linalg.cholesky(cell.metric).T

@@ -6,10 +6,12 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from ellipsoid_planning.crystal.file_content import read_content
 from ellipsoid_planning.crystal.symmetry.operation import Operation
 from ellipsoid_planning.crystal.symmetry.space_group import SpaceGroup
 from ellipsoid_planning.errors import CrystalError, ScenarioError
 
+MOST_BYTES = 1 << 20
 HEADER = re.compile(r"coset\s*\d*\s*:?\s*", re.IGNORECASE)
 
 
@@ -75,10 +77,7 @@ def print_group(group: SpaceGroup) -> str:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8-sig")  # editors may begin it with a mark
-    except OSError as error:
-        problem = f"cannot read the file of operations: {error.strerror}"
-        raise ScenarioError(problem, file=str(path)) from None
+        return read_content(path, MOST_BYTES).decode()
     except UnicodeDecodeError:
         raise ScenarioError("expected a text file with operations", file=str(path)) from None
 

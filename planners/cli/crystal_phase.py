@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from planners.crystal.phasing import PhasingOutcome
 
 FOUND, NOT_FOUND = 0, 1
+MOST_CANDIDATES = 1_000_000
 
 
 class Ways(str, Enum):
@@ -78,6 +79,7 @@ def phase(
         typer.Option(
             metavar="N",
             min=1,
+            max=MOST_CANDIDATES,
             help="How many candidates are refined, if need be: 50 without it, 10 with "
             "[bold]--refine rrt[/bold]; trees are grown for the best 10 of them only.",
         ),

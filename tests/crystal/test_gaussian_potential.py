@@ -205,7 +205,7 @@ def test_mixture_has_the_integral_one_and_the_thesis_numbers():
 def test_bad_input():
     model = load_model("rabbit-plane")
     for spread in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(CrystalError, match="m_b > 0"):
+        with pytest.raises(CrystalError, match="0 < m_b <= 1e"):
             GaussianMixture(spread)
     with pytest.raises(CrystalError, match="tail between"):
         GaussianPotential(model, GaussianMixture(1.0), tail=0.0)

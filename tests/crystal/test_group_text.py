@@ -1,5 +1,7 @@
 """Groups read from text and files, printed, and refused when they are none."""
 
+from pathlib import Path
+
 import pytest
 
 from ellipsoid_planning.crystal import SpaceGroup, space_group, space_group_from_text
@@ -78,7 +80,7 @@ def test_bad_groups(text, words, tmp_path):
 
 
 def test_unreadable_files(tmp_path):
-    with pytest.raises(ScenarioError, match=r"missing\.txt: cannot read"):
+    with pytest.raises(ScenarioError, match=r"missing\.txt: no such file"):
         space_group_from_text(tmp_path / "missing.txt")
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ScenarioError, match="expected a text file"):
@@ -97,3 +99,16 @@ def test_files_with_a_byte_order_mark_and_any_line_ends(tmp_path):
     file = tmp_path / "operations.txt"
     file.write_bytes(b"\xef\xbb\xbf" + THESIS.replace("\n", "\r\n").encode())
     assert space_group_from_text(file).operations == space_group("P212121").operations
+
+
+def test_files_that_never_end_and_marks(tmp_path):
+    with pytest.raises(ScenarioError, match="/dev/zero: expected a regular file"):
+        space_group_from_text(Path("/dev/zero"))
+    with pytest.raises(ScenarioError, match="this is a folder"):
+        space_group_from_text(tmp_path)
+    file = tmp_path / "own.txt"
+    file.write_text("# much\n" * (1 << 18))
+    with pytest.raises(ScenarioError, match="at most 1,048,576 bytes"):
+        space_group_from_text(file)
+    file.write_bytes(THESIS.encode("utf-8-sig"))
+    assert space_group_from_text(file).order == 4

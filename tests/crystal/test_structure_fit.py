@@ -143,8 +143,9 @@ def test_parts_of_a_domain(protein):
     [
         ({"shape": "box"}, "expected one of moments, volume, enclosing"),
         ({"parts": 0}, "at least one ellipsoid"),
-        ({"scale": -1.0}, "expected a positive number"),
-        ({"scale": math.nan}, "expected a positive number"),
+        ({"scale": -1.0}, "expected a number from 0.001 to 1000"),
+        ({"scale": math.nan}, "expected a number from 0.001 to 1000"),
+        ({"scale": 1e300}, "expected a number from 0.001 to 1000"),
     ],
 )
 def test_fits_that_are_refused(protein, options, told):

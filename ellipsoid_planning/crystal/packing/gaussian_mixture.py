@@ -17,6 +17,9 @@ RATIOS_A = (3.0, -1.0)
 RATIOS_B = (1.0, 3.0)
 
 
+LARGEST_SPREAD = 1e6
+
+
 @dataclass(frozen=True)
 class GaussianMixture:
     """The mixture ψ(x; a, b) of thesis (3.11) with a = m_a [3, −1] and b = m_b [1, 3].
@@ -26,18 +29,19 @@ class GaussianMixture:
     ellipsoid, because m_a = m_b^(n/2) / (3 − 3^(−n/2)).
 
     Attributes:
-        spread: m_b > 0. The larger, the narrower the Gaussians.
+        spread: m_b, above 0 and at most 1e6. The larger, the narrower the Gaussians.
 
     Raises:
-        CrystalError: if m_b is not positive and finite.
+        CrystalError: if m_b is not in its range.
     """
 
     spread: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.spread) and self.spread > 0.0):
+        if not 0.0 < self.spread <= LARGEST_SPREAD:
             raise CrystalError(
-                f"expected m_b > 0, got {self.spread:g}; 0.2 is the thesis' value in the plane"
+                f"expected 0 < m_b <= {LARGEST_SPREAD:g}, got {self.spread:g}; 0.2 is the thesis' "
+                "value in the plane"
             )
 
     @property

@@ -24,6 +24,7 @@ Document = dict[str, Any]
 DIGITS = 3  # of lengths [Å]
 FINE_DIGITS = 6  # of directions and densities
 AXES = ("x", "y", "z")
+LEAST_STEP = 1e-3  # files have few digits
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,8 @@ class SearchSteps:
         resolution: the smallest spacing of the planes whose magnitudes are compared [Å].
 
     Raises:
-        CrystalError: a step or the resolution is not positive, or the hinges' turn is negative or
-            more than half a turn.
+        CrystalError: a step or the resolution is tiny or not positive, or the hinges' turn is
+            negative or more than half a turn.
     """
 
     shift: float = 5.0
@@ -51,8 +52,8 @@ class SearchSteps:
     def __post_init__(self) -> None:
         for name in ("shift", "turn_deg", "hinge_steps", "resolution"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise CrystalError(f"{name} {value:g}: expected a positive number")
+            if not (math.isfinite(value) and value >= LEAST_STEP):
+                raise CrystalError(f"{name} {value:g}: expected a number from {LEAST_STEP:g} on")
         if not 0.0 <= self.hinge_deg <= 180.0:
             raise CrystalError(
                 f"hinge_deg {self.hinge_deg:g}: expected 0 (hinges are stiff) to 180 degrees"

@@ -34,6 +34,7 @@ DALTON = 1.66053907  # [1e-24 g]
 VOLUME_OF_DALTON = SPECIFIC_VOLUME * DALTON  # 1.21 [Å³/Da]
 BALL = 4.0 / 3.0 * math.pi
 MOST_ROUNDS = 100
+MOST_SCALE = 1000.0  # and its inverse the least
 STEPS = 1000  # of scales, in 1
 MARGIN = 0.1  # of such a step
 DEPTHS = 10  # of overlap, in 1 Å
@@ -177,8 +178,10 @@ def _check(shape: str, parts: int, scale: float) -> None:
         raise CrystalError(f"shape {shape!r}: expected one of {', '.join(SHAPES)}")
     if parts < 1:
         raise CrystalError(f"parts {parts}: expected at least one ellipsoid for each domain")
-    if not (math.isfinite(scale) and scale > 0.0):
-        raise CrystalError(f"scale {scale:g}: expected a positive number")
+    if not 1.0 / MOST_SCALE <= scale <= MOST_SCALE:
+        raise CrystalError(
+            f"scale {scale:g}: expected a number from {1.0 / MOST_SCALE:g} to {MOST_SCALE:g}"
+        )
 
 
 def _residues(atoms: Atoms, rows: Rows) -> int:

@@ -39,6 +39,7 @@ from planners.request import (
 from planners.solve import Outcome, plan_result
 from planners.spaces import state_access
 from planners.verify import verify_result
+from planners.verify.report import NOT_RESOLVED
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PlanResult
@@ -189,6 +190,8 @@ def _verified(record: RunRecord, result: PlanResult) -> RunRecord:
     if report.passed:
         return record
     reason = "; ".join(f"{check.name}: {check.detail}" for check in report.failures)
+    if report.verdict == NOT_RESOLVED:
+        return replace(record, reason=reason)
     return replace(record, status=NOT_FREE, reason=reason)
 
 

@@ -84,7 +84,7 @@ class RunRecord:
     Attributes:
         problem, planner, checker, label, run, seed: as in its task.
         status: one of `STATUSES`.
-        reason: why it failed, in words; empty when solved.
+        reason: why it failed, or why its path could not be verified, in words; else empty.
         seconds: time of the planner alone [s].
         simplification: time of the path's simplification [s].
         length: OMPL's length of the simplified path.

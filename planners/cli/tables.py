@@ -9,7 +9,7 @@ from rich.table import Table
 
 if TYPE_CHECKING:
     from ellipsoid_planning.result import PathResult, PlanResult
-    from planners.verify.report import VerificationReport
+    from planners.verify.report import Check, VerificationReport
 
 COLOURS = {"solved": "green", "timeout": "yellow", "exhausted": "yellow"}
 
@@ -60,14 +60,28 @@ def report_table(report: VerificationReport) -> Table:
     table.add_column(style="bold")
     table.add_column()
     table.add_column(overflow="fold")
-    for check in report.checks:
-        verdict = "[green]passed[/green]" if check.passed else "[red]FAILED[/red]"
-        table.add_row(escape(check.name), verdict, escape(check.detail))
+    table.add_row("scenario", "", escape(report.scenario))
     table.add_section()
+    for check in report.checks:
+        table.add_row(escape(check.name), _passed(check), escape(check.detail))
+    table.add_section()
+    if not report.samples:
+        return _with_verdict(table, report)
     table.add_row("configurations", "", str(report.samples))
     table.add_row("sampled clearance", "", f"{report.sampled_clearance:.9g}")
-    table.add_row("resolved", "", f"{100.0 * report.resolved:.4g} % of the path")
+    table.add_row("proved", "", f"{100.0 * report.resolved:.4g} % of the path")
     table.add_row("tested by FCL", "", str(report.fcl_samples))
-    verdict = "[green]verified[/green]" if report.passed else "[red]NOT VERIFIED[/red]"
-    table.add_row("verdict", "", verdict)
+    return _with_verdict(table, report)
+
+
+def _with_verdict(table: Table, report: VerificationReport) -> Table:
+    colour = "green" if report.passed else "red"
+    verdict = report.verdict if report.passed else report.verdict.upper()
+    table.add_row("verdict", "", f"[{colour}]{verdict}[/{colour}]")
     return table
+
+
+def _passed(check: Check) -> str:
+    if check.passed:
+        return "[green]passed[/green]"
+    return "[yellow]open[/yellow]" if check.open else "[red]FAILED[/red]"

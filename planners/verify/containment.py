@@ -42,9 +42,16 @@ def room_at_least(arenas: Array, parts: Array, offset: Array) -> Array:
 
 
 def _room(arenas: Array, parts: Array, offset: Array) -> Array:
+    u = narrowest_directions(arenas, parts, offset)
+    return -value(u, offset, arenas, parts, -1.0)
+
+
+def narrowest_directions(arenas: Array, parts: Array, offset: Array) -> Array:
+    """Directions (k, n) along which parts have the least room, as far as a search finds them."""
     candidates = _outermost_normal(arenas, parts, offset), _tightest(arenas, parts, offset)
-    ascended = [ascend(u, offset, arenas, parts, -1.0) for u in candidates]
-    return -np.max([value(u, offset, arenas, parts, -1.0) for u in ascended], axis=0)
+    one, two = (ascend(u, offset, arenas, parts, -1.0) for u in candidates)
+    better = value(one, offset, arenas, parts, -1.0) >= value(two, offset, arenas, parts, -1.0)
+    return np.where(better[:, None], one, two)
 
 
 def _outermost_normal(arenas: Array, parts: Array, offset: Array) -> Array:

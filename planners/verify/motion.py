@@ -10,8 +10,8 @@ from planners.verify.coordinates import coordinates
 
 Array = NDArray[np.float64]
 
-# OMPL takes quaternions for equal whose product is this close to 1, and keeps the first.
-_SAME_QUATERNION = 1e-9
+SAME_QUATERNION = 1e-9
+"""OMPL takes quaternions for equal whose product is this close to 1, and keeps the first."""
 
 
 def interpolate(robot: Robot, first: Array, second: Array, s: Array) -> Array:
@@ -20,7 +20,7 @@ def interpolate(robot: Robot, first: Array, second: Array, s: Array) -> Array:
     out = first + s[:, None] * (second - first)
     for angle in known.angles:
         at = angle.place.start
-        out[:, at] = first[:, at] + s * _turn(first[:, at], second[:, at])
+        out[:, at] = first[:, at] + s * turn_between(first[:, at], second[:, at])
     for quaternion in known.quaternions:
         out[:, quaternion.place] = _slerp(
             first[:, quaternion.place], second[:, quaternion.place], s
@@ -37,7 +37,7 @@ def _slerp(first: Array, second: Array, s: Array) -> Array:
     return begin[:, None] * first + end[:, None] * second
 
 
-def _turn(first: Array, second: Array) -> Array:
+def turn_between(first: Array, second: Array) -> Array:
     """The shortest turn between headings; a half-turn goes the direct way, as in OMPL."""
     turn = second - first
     around = np.where(turn > 0.0, turn - 2.0 * np.pi, turn + 2.0 * np.pi)
@@ -48,7 +48,7 @@ def _arc(first: Array, second: Array) -> tuple[Array, Array]:
     """OMPL's arc length between unit quaternions (k, 4), half the rotation, and the sign."""
     product = np.sum(first * second, axis=1)
     length = np.abs(product)
-    apart = length <= 1.0 - _SAME_QUATERNION
+    apart = length <= 1.0 - SAME_QUATERNION
     return np.where(apart, np.arccos(np.minimum(length, 1.0)), 0.0), np.where(product < 0, -1.0, 1)
 
 
@@ -78,7 +78,7 @@ def joint_speeds(robot: Robot, first: Array, second: Array) -> Array:
 def _turned(first: Array, second: Array) -> Array:
     """The angles (k,) between headings (k, 1) or quaternions (k, 4)."""
     if first.shape[1] == 1:
-        return np.abs(_turn(first[:, 0], second[:, 0]))
+        return np.abs(turn_between(first[:, 0], second[:, 0]))
     return 2.0 * _arc(first, second)[0]
 
 

@@ -9,11 +9,19 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.result import PathResult, PlanResult
 from ellipsoid_planning.scenario import Scenario
+from planners.verify.body_checks import (
+    body_checks,
+    open_checks,
+    smallest_clearance,
+    stated_check,
+)
 from planners.verify.coordinates import Turn, coordinates
 from planners.verify.fcl_agreement import fcl_contacts
+from planners.verify.judged import described, differences, mismatch
 from planners.verify.motion import lengths
 from planners.verify.report import Check, VerificationReport
-from planners.verify.sampling import SampledPath, sample_path, sample_path_itself
+from planners.verify.sampling import sample_path, sample_path_itself
+from planners.verify.whole_motions import WholeMotions, prove_motions
 
 Array = NDArray[np.float64]
 
@@ -23,38 +31,73 @@ SAME_STATE = 1e-9
 SAME_LENGTH = 1e-6
 ROUNDING = 1e-12
 
+_NEARLY = 0.99  # of a stated clearance is proved; all of it would take for ever
 
-def verify_result(result: PlanResult) -> VerificationReport:
-    """Check a result's path against its scenario, independently of the kernels.
 
-    The path is sampled as `sampling.sample_path` describes. A contact, a lost clearance or an
-    overstated one fails only when it is certain beyond rounding; so does everything else.
+def verify_result(result: PlanResult, scenario: Scenario | None = None) -> VerificationReport:
+    """Check a result's path, independently of the kernels.
+
+    Samples look for contacts and measure the clearance; between them `whole_motions` proves that
+    nothing is met, and says so where it cannot. A contact, a lost clearance or an overstated one
+    fails only when it is certain beyond rounding; so does everything else.
+
+    Args:
+        result: what a planner found.
+        scenario: what to judge it against; by default the scenario that the result carries.
     """
+    against = _against(result.scenario, scenario)
+    judged = result.scenario if scenario is None else scenario
     if result.path is None:
         missing = Check("path", passed=False, detail=f"there is none, status {result.status!r}")
-        return VerificationReport((missing,))
-    scenario, path = result.scenario, result.path.configurations
-    size = _size(scenario)
-    stated = [*_state_checks(scenario, path, size), _length_check(scenario, result.path)]
-    sampled = sample_path(scenario, path)
+        return VerificationReport((missing,), scenario=against)
+    problem = mismatch(result.scenario, judged)
+    if problem is not None:
+        return VerificationReport((Check("robot", passed=False, detail=problem),), scenario=against)
+    path, size = result.path.configurations, _size(judged)
+    states = [*_state_checks(judged, path, size), _length_check(result.scenario, result.path)]
+    return _judged(judged, result.path, states, against, size)
+
+
+def _against(carried: Scenario, given: Scenario | None) -> str:
+    if given is None:
+        return f"the result's own, {described(carried)}; --scenario judges it against yours"
+    different = differences(carried, given)
+    note = f"; the result's own has other {', '.join(different)}" if different else ""
+    return f"yours, {described(given)}{note}"
+
+
+def _judged(
+    scenario: Scenario, stated: PathResult, states: list[Check], against: str, size: float
+) -> VerificationReport:
+    """The report on a path, given the checks that only look at its states."""
+    path = stated.configurations
+    sampled, itself = sample_path(scenario, path), sample_path_itself(scenario, path)
     tested, contacts = fcl_contacts(scenario, sampled.configurations, sampled.lower, size)
-    samples, resolved, apart = len(sampled.configurations), sampled.resolved, []
-    itself = sample_path_itself(scenario, path)
+    samples = len(sampled.configurations)
     if itself is not None:
         rows, lower = itself.configurations, itself.lower
         more, found = fcl_contacts(scenario, rows, lower, size, itself=True)
-        tested, contacts = tested + more, contacts + found
-        samples, resolved = samples + len(rows), min(resolved, itself.resolved)
-        apart = [_self_check(itself)]
+        tested, contacts, samples = tested + more, contacts + found, samples + len(rows)
+    whole = prove_motions(scenario, path, _needed(scenario.clearance, size))
+    bodies = body_checks(sampled, itself, whole)
     agreement = Check("FCL", contacts == 0, f"sees {contacts} contacts in {tested} configurations")
-    bodies = _body_checks(scenario, result.path, sampled, size)
+    smallest, place = smallest_clearance(sampled, whole)
+    clearances = list(_clearance_checks(scenario, stated, (smallest, place), whole, size))
+    # A clearance that is lost for certain leaves nothing open.
+    between = open_checks(whole) if clearances[0].passed else ()
     return VerificationReport(
-        (*stated, *bodies, *apart, agreement),
+        (*states, *bodies, *clearances, *between, agreement),
         samples=samples,
-        sampled_clearance=sampled.smallest,
-        resolved=resolved,
+        sampled_clearance=smallest,
+        resolved=whole.resolved,
         fcl_samples=tested,
+        scenario=against,
     )
+
+
+def _needed(clearance: float, size: float) -> float:
+    """The clearance to prove; what rounding hides of a required one is not missed."""
+    return max(clearance - ROUNDING * size, 0.0)
 
 
 def _size(scenario: Scenario) -> float:
@@ -99,16 +142,6 @@ def _limit_check(path: Array, joints: list[Turn]) -> Check:
     return Check("limits", passed, detail)
 
 
-def _self_check(itself: SampledPath) -> Check:
-    where = f"in motion {itself.place[0]} at {itself.place[1]:.6g}"
-    worst = itself.worst
-    if worst is None:
-        detail = f"no part meets another, at least {2.0 * itself.smallest:.6g} {where}"
-        return Check("self-collision", passed=True, detail=detail)
-    detail = f"part {worst.part!r} meets {worst.body!r}, about {worst.depth:.3g} deep, {where}"
-    return Check("self-collision", passed=False, detail=detail)
-
-
 def _apart(scenario: Scenario, one: Array, other: Array) -> float:
     """How far apart two configurations are, with turns in radians."""
     return lengths(scenario.robot, np.array([one, other]))[0]
@@ -121,22 +154,24 @@ def _length_check(scenario: Scenario, path: PathResult) -> Check:
     return Check("length", error <= SAME_LENGTH * (1.0 + length), detail)
 
 
-def _body_checks(
-    scenario: Scenario, path: PathResult, sampled: SampledPath, size: float
+def _clearance_checks(
+    scenario: Scenario,
+    stated: PathResult,
+    found: tuple[float, str],
+    whole: WholeMotions,
+    size: float,
 ) -> Iterator[Check]:
-    place = f"in motion {sampled.place[0]} at {sampled.place[1]:.6g}"
-    worst = sampled.worst
-    for kind, verb in (("obstacle", "hits"), ("arena", "leaves")):
-        passed = worst is None or worst.kind != kind
-        detail = "none is hit" if kind == "obstacle" else "the robot stays inside"
-        if worst is not None and not passed:
-            about = f"{kind} {worst.body!r}, about {worst.depth:.3g} deep"
-            detail = f"part {worst.part!r} {verb} {about}, {place}"
-        yield Check(f"{kind}s", passed, detail)
-    smallest, doubt = sampled.smallest, ROUNDING * size
+    smallest, place = found
+    doubt = ROUNDING * size
     kept = smallest >= scenario.clearance - doubt
     detail = f"{smallest:.9g} {place}, required {scenario.clearance:g}"
     yield Check("clearance", kept, detail)
-    honest = path.min_clearance <= smallest + doubt
-    detail = f"stated at least {path.min_clearance:.9g}, sampled {smallest:.9g}"
-    yield Check("stated clearance", honest, detail)
+    least = stated.min_clearance
+    detail = f"stated at least {least:.9g}, sampled {smallest:.9g}"
+    honest = least <= smallest + doubt
+    needed = _NEARLY * least
+    if honest and whole.proved and _needed(scenario.clearance, size) < needed < np.inf:
+        proof = prove_motions(scenario, stated.configurations, needed, itself=False)
+        yield stated_check(proof, least, detail, doubt)
+    else:
+        yield Check("stated clearance", honest, detail)

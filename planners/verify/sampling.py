@@ -1,4 +1,4 @@
-"""Samples a path until no contact can hide between two samples, or the budget is spent."""
+"""Samples a path where bodies are close: contacts, and the smallest clearance."""
 
 from __future__ import annotations
 
@@ -39,8 +39,6 @@ class SampledPath:
         worst: the deepest contact that is certain, None if there is none.
         place: of that contact or, without one, of the smallest clearance: the motion's index
             and the fraction of it.
-        resolved: the fraction of the path, by the robot's largest travel, where the distances
-            at the samples exclude a contact between them.
     """
 
     configurations: Array
@@ -48,7 +46,6 @@ class SampledPath:
     smallest: float
     worst: Meeting | None
     place: tuple[int, float]
-    resolved: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +92,7 @@ class _Sampler:
         self._found.append(_Samples(motion, s, rows, clearances.lower, clearances.upper))
         return clearances.lower
 
-    def collect(self, resolved: float) -> SampledPath:
+    def collect(self) -> SampledPath:
         """Everything that was found."""
         upper = np.concatenate([samples.upper for samples in self._found])
         motion = np.concatenate([samples.motion for samples in self._found])
@@ -107,7 +104,6 @@ class _Sampler:
             float(upper[least]),
             self.worst,
             (int(motion[least]), float(s[least])) if self.worst is None else self._worst_place,
-            resolved,
         )
 
 
@@ -131,9 +127,9 @@ def sample_path_itself(scenario: Scenario, path: Array) -> SampledPath | None:
 def _sampled(sampler: _Sampler) -> SampledPath:
     """Sample the motions of a path (m, d) evenly at first, then wherever bodies are close.
 
-    Two samples resolve the motion between them when the robot's largest travel there is less
-    than their clearances together, so that nothing can be reached. Where that does not hold,
-    or where the clearance could fall clearly below the smallest found, halves are sampled.
+    Between two samples the clearance is at least half of what is left of both when the robot's
+    largest travel is taken off. Where that is clearly below the smallest found, halves are
+    sampled. `resolution` proves what lies between.
     """
     motion, begin, end = _first_intervals(sampler.speeds)
     spacing = sampler.speeds[motion] * (end - begin)
@@ -155,7 +151,7 @@ def _sampled(sampler: _Sampler) -> SampledPath:
         at_begin = np.concatenate([at_begin, at_middle])
         at_end = np.concatenate([at_end, at_end[split]])
         end[split], at_end[split] = middle, at_middle
-    return sampler.collect(_resolved(sampler.speeds[motion] * (end - begin), at_begin, at_end))
+    return sampler.collect()
 
 
 def _first_intervals(speeds: Array) -> tuple[Indices, Array, Array]:
@@ -167,10 +163,3 @@ def _first_intervals(speeds: Array) -> tuple[Indices, Array, Array]:
     motion = np.repeat(np.arange(len(speeds)), counts)
     index = np.concatenate([np.arange(count) for count in counts])
     return motion, index / counts[motion], (index + 1) / counts[motion]
-
-
-def _resolved(spacing: Array, at_begin: Array, at_end: Array) -> float:
-    total = float(np.sum(spacing))
-    if total == 0.0:
-        return 1.0
-    return float(np.sum(spacing[at_begin + at_end > spacing]) / total)

@@ -35,18 +35,28 @@ class Distances:
 def distances(first: Array, second: Array, offset: Array) -> Distances:
     """Distances of ellipsoids with matrices A = R diag(a) (k, n, n) and centres `offset` apart.
 
-    A direction is proposed by the point at which both bodies, grown alike, would touch; then
-    the distance along it is maximised. Where no direction shows a distance, that point is
-    looked at: if it lies in both bodies, they meet.
+    Where no direction shows a distance, the point at which both bodies, grown alike, would touch
+    is looked at: if it lies in both bodies, they meet.
     """
-    direction, point = _touching(first, second, offset)
-    meet = _in_both(point, first, second, offset)
-    direction = ascend(direction, offset, first, second, 1.0)
+    direction, meet = nearest_directions(first, second, offset)
     reach = np.linalg.norm(first, axis=(1, 2)) + np.linalg.norm(second, axis=(1, 2))
     margin = _ROUNDING * (np.linalg.norm(offset, axis=1) + reach)
     lower = value(direction, offset, first, second, 1.0) - margin
     apart = np.linalg.norm(difference(direction, offset, first, second, 1.0), axis=1) + margin
     return Distances(lower, np.where(lower > 0.0, apart, np.minimum(lower, 0.0)), meet)
+
+
+def nearest_directions(
+    first: Array, second: Array, offset: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Directions (k, n) along which bodies are farthest apart, and who certainly meets.
+
+    A direction is proposed by the point at which both bodies, grown alike, would touch; then
+    the distance along it is maximised.
+    """
+    direction, point = _touching(first, second, offset)
+    meet = _in_both(point, first, second, offset)
+    return ascend(direction, offset, first, second, 1.0), meet
 
 
 def cheap_bounds(first: Array, second: Array, offset: Array) -> tuple[Array, Array]:

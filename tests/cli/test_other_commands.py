@@ -106,6 +106,18 @@ def test_verify_refuses_a_scenario_that_was_exchanged(result_file, tmp_path):
     assert "hits obstacle 'left'" in " ".join(done.stdout.split())
 
 
+def test_verify_judges_against_a_scenario_of_one_s_own(result_file, tmp_path):
+    document = json.loads(result_file.read_text(encoding="utf-8"))["scenario"]
+    document["obstacles"].append({"name": "post", "semi_axes": [9, 9], "position": [0, 0]})
+    yours = tmp_path / "yours.yaml"
+    yours.write_text(json.dumps(document), encoding="utf-8")
+    assert "the result's own" in " ".join(run("verify", result_file).stdout.split())
+    done = run("verify", result_file, "--scenario", yours)
+    assert done.returncode == 1
+    assert "hits obstacle 'post'" in done.stdout
+    assert run("verify", result_file, "--scenario", tmp_path / "none.yaml").returncode == 2
+
+
 def test_verify_needs_a_path(result_file, tmp_path):
     def lose_path(data):
         data.update(status="timeout", path=None)

@@ -17,6 +17,7 @@ import numpy as np
 from numba.core import caching, event
 
 from ellipsoid_planning.compilation import report
+from ellipsoid_planning.trusted_folder import is_trusted, temporary_folder
 
 _SOURCES = Path(__file__).resolve().parent
 _CACHE_VARIABLE = "ELLIPSOID_PLANNING_CACHE"
@@ -44,7 +45,8 @@ def _is_warm(folder: Path) -> bool:
 def _is_writable(folder: Path) -> bool:
     # Asking whether one may is not enough: a mount can be read-only for its owner, too.
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        for level in (folder.parent, folder):
+            level.mkdir(mode=0o755, parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
     except OSError:
         return False
@@ -52,13 +54,14 @@ def _is_writable(folder: Path) -> bool:
 
 
 def _usable(folder: Path) -> bool:
-    return _is_writable(folder) or _is_warm(folder)
+    # Numba's index of a cache is a pickle: whoever can write it runs code in this process.
+    return (_is_writable(folder) or _is_warm(folder)) and is_trusted(folder)
 
 
 def _cache_folder() -> Path:
     name = f"kernels-{_source_key()}"
-    folder = _cache_root() / name
-    return folder if _usable(folder) else Path(tempfile.gettempdir()) / "ellipsoid-planning" / name
+    folder = (_cache_root() / name).resolve()
+    return folder if _usable(folder) else temporary_folder() / name
 
 
 CACHE_FOLDER = _cache_folder()

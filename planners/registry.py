@@ -17,6 +17,8 @@ from ellipsoid_planning.errors import PlannerError
 from ellipsoid_planning.numbers_shown import shown
 from planners.parameter_ranges import check_ranges
 
+from .installed import installed_planners
+
 if TYPE_CHECKING:
     from ompl import base as ob
 
@@ -154,12 +156,24 @@ class OwnPlanner:
 
     def allocate(self, si: ob.SpaceInformation, values: Mapping[str, Any]) -> ob.Planner:
         """A new planner with ``values`` set; they must have gone through `checked_parameters`."""
-        planner: Any = self.load()(si)
+        planner = self._constructed(si)
         for name, value in values.items():
             setattr(planner, name, value)
         if hasattr(planner, "check_parameters"):
             planner.check_parameters()
         return planner
+
+    def _constructed(self, si: ob.SpaceInformation) -> Any:
+        try:
+            return self.load()(si)
+        except PlannerError:
+            raise
+        except Exception as error:
+            reason = (str(error).strip().splitlines() or ["no reason given"])[0]
+            raise PlannerError(
+                f"planner {self.module}:{self.name}: expected a class that is constructed from a"
+                f" SpaceInformation alone, got {type(error).__name__}: {reason}"
+            ) from error
 
 
 PlannerEntry = BoundPlanner | OwnPlanner
@@ -261,16 +275,15 @@ _BY_NAME = {entry.name: entry for entry in _ENTRIES}
 
 
 def planner_names() -> tuple[str, ...]:
-    """The names of all planners, our own first."""
-    return tuple(_BY_NAME)
+    """The names of all planners: our own, OMPL's, then those of other installed packages."""
+    return (*_BY_NAME, *(name for name in installed_planners() if name not in _BY_NAME))
 
 
-def find_planner(name: str) -> PlannerEntry:
-    """The entry of a planner.
+def registered_planner(name: str) -> PlannerEntry:
+    """The entry of a planner that is built in or installed; what data may name.
 
-    A name ``module:Class`` stands for a subclass of `ob.Planner` of your own in a module that
-    can be imported, see `OwnPlanner`; with a class attribute ``NEEDS_PLUGIN`` that is true it
-    works with the plug-in's checker only.
+    Files can come from anybody, so that a name in one must never choose code: ``module:Class``
+    is refused here.
 
     Raises:
         PlannerError: no planner has this name; the message suggests the closest ones.
@@ -278,21 +291,60 @@ def find_planner(name: str) -> PlannerEntry:
     if name in _BY_NAME:
         return _BY_NAME[name]
     if ":" in name:
-        return _foreign_planner(*name.split(":", 1))
-    raise PlannerError(f"unknown planner {name!r}{_hint(name, _BY_NAME)}")
+        raise PlannerError(
+            f"planner {name!r}: expected a planner's name; files cannot name classes, since"
+            " opening a file must not run code. If you trust it, name it yourself: --planner"
+            f" {name}, or planner={name!r} in Python"
+        )
+    installed = installed_planners()
+    if name in installed:
+        return _foreign_planner(*installed[name].split(":", 1))
+    raise PlannerError(f"unknown planner {name!r}{_hint(name, planner_names())}")
+
+
+def find_planner(name: str) -> PlannerEntry:
+    """The entry of a planner that the user names; for names in files, see `registered_planner`.
+
+    A name ``module:Class`` stands for a subclass of `ob.Planner` of your own in a module that
+    can be imported, see `OwnPlanner`; with a class attribute ``NEEDS_PLUGIN`` that is true it
+    works with the plug-in's checker only.
+
+    Raises:
+        PlannerError: no planner has this name (the message suggests the closest ones), the class
+            cannot be imported, or it is no planner.
+    """
+    return _foreign_planner(*name.split(":", 1)) if ":" in name else registered_planner(name)
 
 
 def _foreign_planner(module: str, class_name: str) -> OwnPlanner:
+    where = f"planner {module}:{class_name}"
     entry = OwnPlanner(class_name, module)
     try:
         found = entry.load()
-    except (ImportError, ValueError) as error:
-        raise PlannerError(f"planner {module}:{class_name}: cannot import it: {error}") from None
-    except AttributeError:
+    except AttributeError as error:
+        if getattr(error, "name", None) != class_name:
+            raise _broken_module(where, error) from error
+        raise PlannerError(f"{where}: the module {module} has no {class_name}") from None
+    except (Exception, SystemExit) as error:
+        raise _broken_module(where, error) from error
+    from ompl import base as ob
+
+    if not isinstance(found, type) or not issubclass(found, ob.Planner):
+        kind = f"the class {found.__name__}" if isinstance(found, type) else type(found).__name__
         raise PlannerError(
-            f"planner {module}:{class_name}: the module {module} has no {class_name}"
-        ) from None
+            f"{where}: expected a class derived from ompl.base.Planner, this is {kind}; name the"
+            " class of your planner"
+        )
     return replace(entry, needs_plugin=bool(getattr(found, "NEEDS_PLUGIN", False)))
+
+
+def _broken_module(where: str, error: BaseException) -> PlannerError:
+    reason = " ".join(str(error).split())
+    if isinstance(error, (ImportError, ValueError)):  # an empty name is a ValueError
+        return PlannerError(f"{where}: cannot import it: {reason}")
+    return PlannerError(
+        f"{where}: cannot import it: the module raised {type(error).__name__}: {reason}"
+    )
 
 
 def checked_parameters(entry: PlannerEntry, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from ellipsoid_planning.sizes import MOST_SECONDS
 
 from . import bindings
 from .certify import is_certified
-from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner
+from .registry import OwnPlanner, PlannerEntry, checked_parameters, find_planner, registered_planner
 from .setup import CHECKERS, PLUGIN_CHECKERS, Checker, simple_setup
 from .spaces import state_access, write_configuration
 
@@ -116,7 +116,7 @@ def chosen_planner(scenario: Scenario, planner: str | None) -> tuple[PlannerEntr
     """
     own = dict(scenario.planner)
     own_name = own.pop("name", DEFAULT_PLANNER)
-    entry = find_planner(own_name if planner is None else planner)
+    entry = registered_planner(own_name) if planner is None else find_planner(planner)
     return entry, own if entry.name == own_name else {}
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ellipsoid_planning import __version__, atomic
+from ellipsoid_planning import __version__, atomic, input_files
 from ellipsoid_planning.errors import ResultError
 from ellipsoid_planning.metric import base_travel, path_length
 from ellipsoid_planning.robots.robot import Robot
@@ -181,7 +181,7 @@ def load_result(path: str | Path) -> PlanResult:
         ResultError: if the file cannot be read, is no result, or contradicts itself.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = input_files.read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise ResultError(f"{path}: cannot read the result: {reason}") from None

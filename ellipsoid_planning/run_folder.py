@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ellipsoid_planning import atomic
+from ellipsoid_planning import atomic, input_files
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from ellipsoid_planning.leftovers import remove_partial_files
 
 Settings = Mapping[str, Any]
 
@@ -89,7 +90,7 @@ class RunFolder:
         """
         file = self.folder / self.manifest
         try:
-            settings = json.loads(file.read_text(encoding="utf-8"))
+            settings = json.loads(input_files.read_text(file))
         except (OSError, ValueError):
             settings = None
         if not isinstance(settings, dict):
@@ -97,13 +98,15 @@ class RunFolder:
         return settings
 
     def write_settings(self, settings: Settings) -> None:
-        """Create the folder and write the settings.
+        """Create the folder and write the settings; what killed runs left half-written goes.
 
         Raises:
             EllipsoidPlanningError: it cannot be created.
         """
         try:
             self.folder.mkdir(exist_ok=True)
+            for folder, _, _ in os.walk(self.folder):
+                remove_partial_files(Path(folder))
             text = json.dumps(settings, indent=1) + "\n"
             atomic.write_text(self.folder / self.manifest, text)
         except OSError as error:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ellipsoid_planning import input_files
 from ellipsoid_planning.errors import ScenarioError
 from ellipsoid_planning.plain_yaml import plain_data
 from ellipsoid_planning.scenario_origin import Origin
@@ -54,14 +56,18 @@ def located(path_or_name: str | Path, bundled: Mapping[str, Path], kind: str, fi
     Raises:
         ScenarioError: if there is neither such a file nor such a bundled one.
     """
-    path = Path(path_or_name)
-    if path.is_file():
+    path, text = Path(path_or_name), str(path_or_name)
+    found = _mode(path, text)
+    if stat.S_ISREG(found):
         return path
-    text = str(path_or_name)
     if text in bundled:
         return bundled[text]
-    if path.is_dir():
+    if stat.S_ISDIR(found):
         raise ScenarioError(f"expected a {file}, got a folder", file=text)
+    if found:
+        raise ScenarioError(
+            f"expected a {file}, got a pipe or a device; save it to a file first", file=text
+        )
     problem = f"no such file, and no bundled {kind} of this name"
     close = difflib.get_close_matches(path.stem, list(bundled), n=3, cutoff=0.5)
     if close:
@@ -71,6 +77,17 @@ def located(path_or_name: str | Path, bundled: Mapping[str, Path], kind: str, fi
     raise ScenarioError(problem, file=text)
 
 
+def _mode(path: Path, text: str) -> int:
+    """What stands at a path, as `os.stat` tells of it; 0 if nothing does."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return 0
+    except (OSError, ValueError) as error:  # a name that holds a null
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ScenarioError(f"cannot read the file: {reason}", file=text) from None
+
+
 def read_document(path: Path) -> tuple[Any, Origin]:
     """Return a YAML file's content as plain Python data, and where each entry stands.
 
@@ -78,7 +95,7 @@ def read_document(path: Path) -> tuple[Any, Origin]:
         ScenarioError: if the file cannot be read, is broken YAML or repeats a key.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = input_files.read_text(path)
     except UnicodeDecodeError as error:
         problem = f"expected UTF-8 text, but byte {error.start} is not; save the file as UTF-8"
         raise ScenarioError(problem, file=str(path)) from None

@@ -6,6 +6,7 @@ takes little more than half as long on two cores. The cache on disk brings them 
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -27,6 +28,7 @@ from ellipsoid_planning.kernels import (
 from ellipsoid_planning.kernels.compile import CACHE_FOLDER, compiling_elsewhere
 from ellipsoid_planning.kernels.roadmap_metric import turn_length
 from ellipsoid_planning.kernels.robot_model import poses_are_free, step_count
+from ellipsoid_planning.processes import end_with
 from ellipsoid_planning.roadmap.gates import GateFinder, probe
 from ellipsoid_planning.roadmap.joint_layers import home_configuration, layer_metric
 from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link, RigidRobot
@@ -34,7 +36,7 @@ from ellipsoid_planning.world import World
 
 # Stands in the cache's folder while and after somebody compiles these kernels.
 _MARKS = {False: "passages", True: "passages-articulated"}
-_PROGRAM = "from ellipsoid_planning.roadmap.passage_kernels import main; main({})"
+_PROGRAM = "from ellipsoid_planning.roadmap.passage_kernels import main; main({}, {})"
 # No compilation takes as long [s].
 _LONGEST = 600.0
 
@@ -85,7 +87,7 @@ def compiling_aside(articulated: bool) -> Iterator[None]:
     with suppress(OSError):
         (CACHE_FOLDER / _MARKS[articulated]).touch(exist_ok=False)
         process = subprocess.Popen(  # noqa: S603 (our own program)
-            [sys.executable, "-c", _PROGRAM.format(articulated)],
+            [sys.executable, "-c", _PROGRAM.format(articulated, os.getpid())],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -102,8 +104,9 @@ def compiling_aside(articulated: bool) -> Iterator[None]:
         raise
 
 
-def main(articulated: bool) -> None:
-    """What the process does: compile for a scene of the simplest kind."""
+def main(articulated: bool, parent: int) -> None:
+    """What the process does: compile for a scene of the simplest kind, while the parent lives."""
+    end_with(parent)
     ball = Ellipsoid.from_semi_axes([1.0, 1.0, 1.0])
     world = World(np.full(3, -9.0), np.full(3, 9.0), (ball, ball))
     robot: RigidRobot | ArticulatedRobot = RigidRobot((ball,))

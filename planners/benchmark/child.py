@@ -1,4 +1,4 @@
-"""The process of one run; `watch` starts it with the folder of its task."""
+"""The process of one run; `watch` starts it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,19 @@ import sys
 from pathlib import Path
 
 from ellipsoid_planning import atomic
+from ellipsoid_planning.processes import end_with
 from planners.benchmark.limits import PHASE, RECORD, STARTING, TASK, phase_limit
 from planners.benchmark.run import CRASHED, RunRecord, RunTask
 
 
 def main() -> None:
-    """Run the task in the folder that is the one argument; leave a record there."""
-    _die_with_parent()
-    os.chdir(sys.argv[1])
+    """Run the task in a folder, and leave a record there.
+
+    The arguments are the folder, the watching process, and a pipe that ends with it.
+    """
+    folder, parent, pipe = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    end_with(parent, pipe)
+    os.chdir(folder)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # who watches decides
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     task = RunTask(**json.loads(Path(TASK).read_text(encoding="utf-8")))
@@ -27,15 +32,6 @@ def main() -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)  # the record is there; how OMPL's globals are taken apart is of no interest
-
-
-def _die_with_parent() -> None:
-    """Let the kernel end this process when the one that watches it is killed; Linux can do it."""
-    if sys.platform == "linux":
-        import ctypes
-
-        set_parent_death_signal = 1
-        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 def _record(task: RunTask) -> RunRecord:

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
+from ellipsoid_planning.leftovers import remove_run_folders
 from planners.benchmark.run import RunRecord, RunTask
 from planners.benchmark.watch import run_one
 
@@ -22,6 +23,7 @@ def run_locally(
 
     Once ``interrupted`` is set, or the caller takes no more, the running ones are killed.
     """
+    remove_run_folders()
     stop = threading.Event()
     with ThreadPoolExecutor(jobs) as pool:
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from ellipsoid_planning import atomic
+from ellipsoid_planning import atomic, input_files
 from ellipsoid_planning.errors import EllipsoidPlanningError
 from ellipsoid_planning.run_folder import RunFolder
 from planners.benchmark.campaign import Campaign, differences
@@ -71,9 +71,9 @@ class Store(RunFolder):
         """
         folder = self.folder / RUNS / task.key
         try:
-            data = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+            data = json.loads(input_files.read_text(folder / RECORD))
             log = folder / LOG
-            text = log.read_text(encoding="utf-8") if log.exists() else None
+            text = input_files.read_text(log) if log.exists() else None
             return RunRecord(**data, log=text)
         except (OSError, ValueError, TypeError):
             return None

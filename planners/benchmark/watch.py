@@ -7,11 +7,12 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from ellipsoid_planning.leftovers import run_folder
 from planners.benchmark.limits import (
     CHECKING,
     MEMORY_GRACE,
@@ -26,6 +27,7 @@ from planners.benchmark.limits import (
 from planners.benchmark.memory import resident_memory
 from planners.benchmark.run import CRASHED, HUNG, OUT_OF_MEMORY, RunRecord, RunTask
 
+CHILD = "planners.benchmark.child"
 _LOOK_EVERY = 0.02  # [s]
 
 
@@ -48,26 +50,37 @@ def run_one(task: RunTask, stopped: Callable[[], bool] = never) -> RunRecord:
     Raises:
         StoppedError: it was stopped.
     """
-    with tempfile.TemporaryDirectory(prefix="ellipsoid-planning-run-") as name:
-        folder = Path(name)
+    with run_folder() as folder, _pipe() as pipe:
         (folder / TASK).write_text(json.dumps(task.to_dict()), encoding="utf-8")
         with (folder / OUTPUT).open("wb") as output:
-            process = _started(folder, output.fileno())
+            process = _started(folder, output.fileno(), pipe)
             try:
                 return _Watch(task, folder, process).record(stopped)
             finally:
                 _kill(process)
 
 
-def _started(folder: Path, output: int) -> subprocess.Popen[bytes]:
+@contextmanager
+def _pipe() -> Iterator[int]:
+    """The reading end of a pipe that ends with this process; nothing is written to it."""
+    reading, writing = os.pipe()
+    try:
+        yield reading
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
+def _started(folder: Path, output: int, pipe: int) -> subprocess.Popen[bytes]:
     paths = [path or os.getcwd() for path in sys.path]  # noqa: PTH109
     return subprocess.Popen(  # noqa: S603  our own module
-        [sys.executable, "-m", "planners.benchmark.child", str(folder)],
+        [sys.executable, "-m", CHILD, str(folder), str(os.getpid()), str(pipe)],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
         stdin=subprocess.DEVNULL,
         stdout=output,
         stderr=output,
+        pass_fds=(pipe,),
         start_new_session=True,  # Ctrl-C is for the parent, which then ends its runs
     )
 

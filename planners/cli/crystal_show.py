@@ -114,12 +114,12 @@ def _chosen(
 def _found(model: PackingModel, file: str) -> NDArray[np.float64]:
     """The arrangement of a result."""
     import json as json_format
-    from pathlib import Path
 
     from ellipsoid_planning.errors import CrystalError, ResultError
+    from ellipsoid_planning.input_files import read_text
 
     try:
-        values = json_format.loads(Path(file).read_text(encoding="utf-8"))["arrangement"]
+        values = json_format.loads(read_text(file))["arrangement"]
         return model.configuration(values["configuration"])
     except OSError as error:
         raise ResultError(f"{file}: cannot read the file: {error.strerror}") from None

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import stat
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning import atomic
 from ellipsoid_planning.errors import EllipsoidPlanningError
+from ellipsoid_planning.leftovers import remove_partial_files
 from planners.cli.interrupt import clean_up
 
 if TYPE_CHECKING:
@@ -42,11 +44,12 @@ def columns(robot: Robot) -> tuple[str, ...]:
 def check_outputs(**outputs: Path | None) -> None:
     """Check that files can be written where the options, by name, want them.
 
-    Ctrl-C leaves no half-written remainders of these files.
+    Ctrl-C leaves no half-written remainders of these files; those of killed commands go.
 
     Raises:
         EllipsoidPlanningError: a folder is missing, is not one or is read-only, an output is a
-            folder, a page has another format's suffix, or two options name the same file.
+            folder or a loop of links, a page has another format's suffix, or two options name the
+            same file.
     """
     taken: dict[Path, str] = {}
     for option, path in outputs.items():
@@ -57,29 +60,45 @@ def check_outputs(**outputs: Path | None) -> None:
             raise EllipsoidPlanningError(
                 f"--html {path}: unknown format {path.suffix!r}; expected {' or '.join(PAGES)}"
             )
-        other = taken.setdefault(path.resolve(), option)
+        other = taken.setdefault(Path(os.path.realpath(path)), option)
         if other != option:
             raise EllipsoidPlanningError(
                 f"--{other} and --{option}: expected two files, both are {path}; rename one"
             )
     clean_up([path for path in outputs.values() if path is not None])
+    for folder in {Path(os.path.realpath(path)).parent for path in outputs.values() if path}:
+        remove_partial_files(folder)
 
 
 def _check_output(option: str, path: Path) -> None:
     folder = path.parent
+    mode = _mode(option, path)
     if not folder.exists():
         raise EllipsoidPlanningError(
             f"{option} {path}: the folder {str(folder)!r} does not exist; create it first"
         )
     if not folder.is_dir():
         raise EllipsoidPlanningError(f"{option} {path}: {str(folder)!r} is a file, not a folder")
-    if path.is_dir():
+    if stat.S_ISDIR(mode):
         raise EllipsoidPlanningError(f"{option} {path}: expected a file name, this is a folder")
-    device = path.exists() and not path.is_file()
-    if not device and not os.access(path.resolve().parent, os.W_OK):  # links are followed
+    # Devices such as /dev/null and pipes are written to; they stay what they are.
+    beside = not mode or stat.S_ISREG(mode)
+    if beside and not os.access(Path(os.path.realpath(path)).parent, os.W_OK):
         raise EllipsoidPlanningError(
             f"{option} {path}: the folder {str(folder)!r} cannot be written to; name another one"
         )
+
+
+def _mode(option: str, path: Path) -> int:
+    """What stands at a path, as `os.stat` tells of it; 0 if nothing does."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return 0
+    except OSError as error:  # a loop of links, too long a name, a closed folder
+        raise EllipsoidPlanningError(
+            f"{option} {path}: cannot write there: {error.strerror}; name another file"
+        ) from None
 
 
 def print_json(document: Mapping[str, Any]) -> None:

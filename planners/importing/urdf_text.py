@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ellipsoid_planning import input_files
 from ellipsoid_planning.errors import UrdfError
 from planners.importing.libraries import library
 from planners.importing.urdf_numbers import check_numbers
@@ -79,7 +80,7 @@ def _parsed(file: Path) -> Any:
         recover=True, resolve_entities=False, no_network=True, remove_comments=True
     )
     try:
-        text = file.read_bytes()
+        text = input_files.read_bytes(file)
         if ENTITY in text:
             raise UrdfError(
                 f"{file}: expected a URDF without entities, got {ENTITY.decode()}; "

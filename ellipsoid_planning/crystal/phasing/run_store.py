@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ellipsoid_planning import __version__, atomic
+from ellipsoid_planning import __version__, atomic, input_files
 from ellipsoid_planning.array_members import plain_array
 from ellipsoid_planning.crystal.packing.fingerprint import differences, normal_form
 from ellipsoid_planning.crystal.packing.model import PackingModel
@@ -85,7 +85,7 @@ class RunStore(RunFolder):
     def kept(self, name: str) -> bytes | None:
         """A piece that was written whole and is unchanged, None otherwise."""
         try:
-            whole = (self.folder / name).read_bytes()
+            whole = input_files.read_bytes(self.folder / name)
         except OSError:
             return None
         content = whole[DIGEST:]

@@ -17,6 +17,7 @@ from ellipsoid_planning.errors import ResultError
 from ellipsoid_planning.metric import base_travel, path_length
 from ellipsoid_planning.robots.robot import Robot
 from ellipsoid_planning.scenario import Scenario
+from ellipsoid_planning.whole_characters import PROBLEM, halved_text
 
 FORMAT = 1
 TIMES = ("planning", "simplification", "total", "build", "search")
@@ -190,6 +191,8 @@ def load_result(path: str | Path) -> PlanResult:
     except (json.JSONDecodeError, RecursionError) as error:
         place = f":{error.lineno}:{error.colno}" if isinstance(error, json.JSONDecodeError) else ""
         raise ResultError(f"{path}{place}: broken JSON; plan again to get a whole file") from None
+    if halved_text(text, data) is not None:
+        raise ResultError(f"{path}: {PROBLEM}")
     return PlanResult.from_dict(data, str(path))
 
 

@@ -13,6 +13,7 @@ from ellipsoid_planning.errors import ScenarioError
 from ellipsoid_planning.plain_yaml import plain_data
 from ellipsoid_planning.scenario_origin import Origin
 from ellipsoid_planning.scenario_places import read_yaml
+from ellipsoid_planning.whole_characters import PROBLEM, halved_text
 
 SUFFIXES = (".yaml", ".yml")
 # Beyond, a text may have more entries than are read.
@@ -109,4 +110,8 @@ def parse_document(text: str, file: str | None = None) -> tuple[Any, Origin]:
     data = plain_data(text) if len(text) <= MOST_CHARACTERS else None
     if data is None:
         data, _ = read_yaml(text, file)
-    return data, Origin(file, text)
+    origin = Origin(file, text)
+    place = halved_text(text, data)
+    if place is not None:
+        raise origin.error(place, PROBLEM)
+    return data, origin

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from planners.cli.interrupt import INTERRUPTED, note_interrupts
+from planners.cli.interrupt import noted_interrupts
 from planners.cli.sources import say_notices
 from planners.cli.terminal import say, working
 
@@ -106,17 +106,17 @@ def benchmark(
     campaign = _campaign(problems, line.contenders, runs, time_limit, memory_limit, seed)
     store = Store(output)
     store.check(campaign)
-    with executor(cluster, jobs) as execute:
+    with executor(cluster, jobs) as execute, noted_interrupts() as interrupted:
         for note in line.notes:
             say(f"Note: {note}")
-        interrupted = note_interrupts()
         store.open(campaign)
         records = run_campaign(campaign, store, execute, interrupted)
-    if records:
-        report(output, campaign, records)
+        if records:
+            report(output, campaign, records)
     if interrupted.is_set():
-        say("Interrupted. The finished runs are kept; give the same command to go on.")
-        raise typer.Exit(INTERRUPTED)
+        message = interrupted.message
+        say(f"{message} The finished runs are kept; give the same command to go on.")
+        raise typer.Exit(interrupted.exit_code)
 
 
 def _names(text: str) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from planners.cli.interrupt import INTERRUPTED, note_interrupts
+from planners.cli.interrupt import noted_interrupts
 from planners.cli.progress import progress
 from planners.cli.terminal import say
 
@@ -143,16 +142,14 @@ def session(workplace: Workplace, settings: Callable[[], Mapping[str, Any]]) -> 
             if store.is_open:
                 say(f"Going on with the run in {store.folder}.")
             store.open(settings())
-        before = signal.getsignal(signal.SIGINT)
-        try:
-            yield Session(execute, store, note_interrupts(twice_ends=True))
-        except KeyboardInterrupt:
-            kept = "What is finished is kept; give the same command to go on."
-            nothing = "Nothing is kept; name a folder by --run to be able to go on."
-            say(f"Interrupted. {nothing if store is None else kept}")
-            raise typer.Exit(INTERRUPTED) from None
-        finally:
-            signal.signal(signal.SIGINT, before)
+        with noted_interrupts(twice_ends=True) as interrupted:
+            try:
+                yield Session(execute, store, interrupted)
+            except KeyboardInterrupt:
+                kept = "What is finished is kept; give the same command to go on."
+                nothing = "Nothing is kept; name a folder by --run to be able to go on."
+                say(f"{interrupted.message} {nothing if store is None else kept}")
+                raise typer.Exit(interrupted.exit_code) from None
 
 
 @contextmanager

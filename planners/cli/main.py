@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from typing import Annotated
 
 import typer
@@ -11,6 +13,7 @@ from planners.cli.benchmark import benchmark
 from planners.cli.command_group import CommandGroup
 from planners.cli.crystal import app as crystal
 from planners.cli.family import family
+from planners.cli.faults import DEBUG, leave
 from planners.cli.figure import figure
 from planners.cli.group import app as group
 from planners.cli.import_urdf import urdf
@@ -23,6 +26,7 @@ from planners.cli.rotations import rotations
 from planners.cli.scenarios import scenarios
 from planners.cli.schema import schema
 from planners.cli.show import show
+from planners.cli.streams import prepare_streams
 from planners.cli.verify import verify
 
 PROGRAM = "ellipsoid-planning"
@@ -47,7 +51,8 @@ def _print_version(wanted: bool) -> None:
 @app.callback(
     epilog=(
         "Exit codes: 0 done, solved, verified; 1 no path within the limit, not verified; "
-        "2 bad input; 130 interrupted. Results go to stdout, everything else to stderr."
+        "2 bad input; 70 a fault of this program; 71 out of memory; 130 interrupted, "
+        "143 terminated. Results go to stdout, everything else to stderr."
     )
 )
 def _root(
@@ -56,6 +61,9 @@ def _root(
         typer.Option(
             "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
         ),
+    ] = False,
+    debug: Annotated[
+        bool, typer.Option(DEBUG, help="Show tracebacks of errors; allowed after the command, too.")
     ] = False,
 ) -> None:
     """Plan collision-free paths for robots made of ellipsoids, and prove them.
@@ -102,8 +110,12 @@ app.add_typer(crystal, name="crystal")
 
 def main() -> None:
     """Run the command line; the process ends with the exit code."""
+    prepare_streams()
     end_on_interrupt()
-    app(prog_name=PROGRAM)
+    try:
+        app(prog_name=PROGRAM)
+    except Exception as error:  # noqa: BLE001  whatever it is, it must not look like "no path"
+        leave(error, shlex.join([PROGRAM, *sys.argv[1:]]))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,9 +15,13 @@ WIDTH = 200
 
 
 def say(message: str) -> None:
-    """Write a line to stderr, neither wrapped nor coloured, so that it can be searched for."""
-    sys.stderr.write(f"{message}\n")
-    sys.stderr.flush()
+    """Write a line to stderr, neither wrapped nor coloured, so that it can be searched for.
+
+    What nobody can be told, since stderr is full or closed, is no reason to end.
+    """
+    with suppress(OSError, ValueError):
+        sys.stderr.write(f"{message}\n")
+        sys.stderr.flush()
 
 
 def result_console() -> Console:

@@ -9,7 +9,7 @@ import pytest
 
 from ellipsoid_planning import __version__
 from ellipsoid_planning.scenario import bundled_scenarios, scenario_schema
-from tests.cli.command import COMMAND, run
+from tests.cli.command import run
 
 COMMANDS = ("plan", "show", "figure", "scenarios", "verify", "schema")
 

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import unicodedata
+from pathlib import Path
 
 import pytest
 
@@ -15,9 +16,9 @@ SIGNS = "⊕ 90° ±1 c₁² ü ∞ → \ud800 漢"
 
 def shell(command, **environment):
     """A finished shell that has run the command line with redirections."""
-    program = " ".join([sys.executable, "-m", "planners.cli"])
+    program = f"{sys.executable} -m planners.cli"
     return subprocess.run(
-        ["sh", "-c", command.replace("PROGRAM", program)],
+        ["/bin/sh", "-c", command.replace("PROGRAM", program)],
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
@@ -72,7 +73,7 @@ def test_a_reader_that_leaves_is_told_from_no_path():
     assert process.returncode == 141
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
 def test_messages_that_cannot_be_written_are_no_reason_to_end():
     done = shell("PROGRAM show nothing --html x.html 2>/dev/full")
     assert done.returncode == 2

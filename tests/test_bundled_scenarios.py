@@ -126,7 +126,7 @@ def test_direct_motion_does_not_solve_it(name):
 def test_certified_path_is_found(name):
     from planners.solve import plan
 
-    result = plan(load_scenario(name), planner="RRTConnect", seed=1, time_limit=30.0)
+    result = plan(load_scenario(name), planner="RRTConnect", seed=1, time_limit=600.0)
     assert result.status == "solved"
     assert result.path is not None
     assert result.path.certified

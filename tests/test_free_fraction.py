@@ -191,7 +191,7 @@ def test_budgets_end_the_work():
     assert 3000 <= free_fraction(cspace, 0, Budget(lines=3000)).fraction.lines < 5000
     wanted = free_fraction(cspace, 0, Budget(half_width=1e-3)).fraction
     assert wanted.half_width <= 1e-3
-    assert free_fraction(cspace, 0, Budget(time_limit=0.05)).seconds < 2.0
+    assert 0 < free_fraction(cspace, 0, Budget(time_limit=1e-9)).fraction.lines < 3000
     calls = []
 
     def stop():

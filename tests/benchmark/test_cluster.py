@@ -3,7 +3,6 @@
 import os
 import signal
 import threading
-import time
 from dataclasses import replace
 
 import pytest
@@ -62,14 +61,10 @@ def test_an_interrupt_ends_the_campaign(client):
     interrupted = threading.Event()
     threading.Timer(0.5, interrupted.set).start()
     tasks = [stubborn("Sleeping", run=run, time_limit=2.0) for run in range(8)]
-    began = time.monotonic()
     assert list(run_on_cluster(client, tasks, interrupted, lambda _: None)) == []
-    assert time.monotonic() - began < 5.0
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense"])
 def test_nobody_there(address):
-    began = time.monotonic()
     with pytest.raises(ClusterError, match="no Dask scheduler"), cluster_client(address):
         pass
-    assert time.monotonic() - began < 12.0

@@ -6,7 +6,7 @@ import sys
 COMMAND = (sys.executable, "-m", "planners.cli")
 
 
-def run(*arguments, folder=None, timeout=120):
+def run(*arguments, folder=None, timeout=900):
     """The finished process of `ellipsoid-planning` with these arguments, run in a folder."""
     return subprocess.run(
         [*COMMAND, *map(str, arguments)],

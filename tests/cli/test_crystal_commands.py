@@ -126,7 +126,7 @@ def test_a_killed_run_goes_on_and_a_changed_model_is_refused(tmp_path, monkeypat
         ):
             time.sleep(0.01)
         process.send_signal(how)
-        out, errors = process.communicate(timeout=60)
+        out, errors = process.communicate(timeout=900)
         if how == signal.SIGINT:
             assert (process.returncode, out) == (130, b""), errors
             assert b"give the same command to go on" in errors

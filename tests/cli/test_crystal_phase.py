@@ -82,7 +82,7 @@ def test_a_killed_run_ends_as_an_unbroken_one(tmp_path):
     while process.poll() is None and not list(folder.glob("refined/*")):
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
-    out, errors = process.communicate(timeout=60)
+    out, errors = process.communicate(timeout=900)
     assert (process.returncode, out) == (130, b""), errors
     assert b"give the same command to go on" in errors
     assert b"Traceback" not in errors

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -45,14 +44,17 @@ def test_help_loads_nothing_heavy():
     assert done.stderr == "set()"
 
 
-def test_help_is_instant():
-    def seconds():
-        began = time.perf_counter()
-        run("--help")
-        return time.perf_counter() - began
-
-    # About 0.2 s on an idle machine; the best of a few runs, since the machine may be busy.
-    assert min(seconds() for _ in range(5)) < 1.0
+def test_help_loads_few_modules():
+    # That is what makes it instant.
+    code = (
+        "import sys\n"
+        "before = len(sys.modules)\n"
+        "from planners.cli.main import app\n"
+        "try:\n    app(['--help'])\nexcept SystemExit:\n    pass\n"
+        "sys.stderr.write(str(len(sys.modules) - before))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert 50 < int(done.stderr) < 450
 
 
 def test_scenarios_are_listed():

@@ -1,7 +1,6 @@
 """Subgroups, normality, cosets: the table of the thesis' check, and brute force."""
 
 from itertools import combinations
-from time import perf_counter
 
 import numpy as np
 import pytest
@@ -43,9 +42,7 @@ COUNTS = {
 @pytest.mark.parametrize("name", COUNTS)
 def test_counts_of_the_thesis_check(name):
     group = space_group(name)
-    start = perf_counter()
     found = all_subgroups(group)
-    assert perf_counter() - start < 20.0
     normal = sum(subgroup.normal for subgroup in found)
     assert (group.order, len(found), class_count(found), normal) == COUNTS[name]
 

@@ -105,7 +105,7 @@ def space_information(cspace: CSpace) -> ob.SpaceInformation:
     return ob.SpaceInformation(state_space(cspace))
 
 
-def run_python(code: str, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
+def run_python(code: str, timeout: float = 900.0) -> subprocess.CompletedProcess[str]:
     """Run ``code`` in a process of its own, where a crash harms nobody."""
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(code)],

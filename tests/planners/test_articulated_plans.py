@@ -27,7 +27,7 @@ ABLE = [name for name in planner_names() if hasattr(og, name) and name not in IN
 
 @pytest.mark.parametrize("name", ABLE)
 def test_every_other_bound_planner_plans_for_joints(name):
-    result = plan(scenario_of("mixed planar"), name, time_limit=20.0, seed=1)
+    result = plan(scenario_of("mixed planar"), name, time_limit=600.0, seed=1)
     assert result.solved
     assert result.path.certified
 
@@ -36,7 +36,7 @@ def test_every_other_bound_planner_plans_for_joints(name):
 @pytest.mark.parametrize("checker", ["plugin", "fcl"])
 def test_plans_are_certified_and_measured_as_by_ompl(kind, checker):
     scenario = scenario_of(kind, clearance=0.02)
-    result = plan(scenario, "RRTConnect", checker, time_limit=20.0, seed=1)
+    result = plan(scenario, "RRTConnect", checker, time_limit=600.0, seed=1)
     assert result.solved
     assert result.path.certified
     path = result.path.configurations
@@ -61,7 +61,7 @@ def test_one_joint_on_a_fixed_base(kind):
     robot = ArticulatedRobot((Link("base"), arm), (joint,), "fixed")
     box = World(np.full(2, -3.0), np.full(2, 3.0))
     scenario = Scenario("one joint", box, robot, np.array([-0.9]), np.array([1.0]))
-    result = plan(scenario, time_limit=5.0, seed=1)
+    result = plan(scenario, time_limit=600.0, seed=1)
     assert result.solved
     assert result.path.certified
 

@@ -3,7 +3,6 @@
 import os
 import signal
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -27,6 +26,7 @@ from planners.verify.result import verify_result
 from tests.planners.planner_scenes import KINDS, scenario_of
 from tests.planners.test_plugin_memory import growth
 from tests.roadmap.scenes import cage
+from tests.told import StopAt
 
 Statuses = ob.PlannerStatus.PlannerStatusType
 NAME = "FreeIntervalRRTConnect"
@@ -103,7 +103,7 @@ def test_three_lines_plan_a_proved_path(kind):
 )
 def test_bundled_scenarios_are_solved_and_verified(name):
     for seed in (1, 2):
-        result = plan(load_scenario(name), NAME, time_limit=60.0, seed=seed)
+        result = plan(load_scenario(name), NAME, time_limit=600.0, seed=seed)
         assert result.status == "solved"
         assert result.path.certified
         assert verify_result(result).passed
@@ -157,13 +157,13 @@ def test_without_a_path_it_ends_when_told_and_says_timeout(n):
     setup, planner = own_setup(cspace, [[40.0] * n + turn], [[0.0] * n + turn])
     planner.warm_up()
     setup.setup()
-    late = []
-    for limit in (0.02, 0.2, 0.5):
-        began = time.perf_counter()
+    planner.setProblemDefinition(setup.getProblemDefinition())
+    for look in (1, 2, 10, 40):
+        stop = StopAt(look)
+        assert planner.solve(stop).getStatus() == Statuses.TIMEOUT
+        assert 0 <= stop.later <= 5
+    for limit in (0.02, 0.2):
         assert setup.solve(limit).getStatus() == Statuses.TIMEOUT
-        late.append(time.perf_counter() - began - limit)
-    assert np.median(late) < 0.05
-    assert max(late) < 0.25
     assert not setup.haveExactSolutionPath()
 
 
@@ -173,14 +173,22 @@ def test_a_closed_wall_is_a_timeout_in_plan(kind):
     assert (result.status, result.path) == ("timeout", None)
 
 
-def test_an_interrupt_ends_it():
+def test_an_interrupt_ends_it(monkeypatch):
     scenario = scenario_of("spatial", blocked=True)
     plan(scenario, NAME, time_limit=0.01)
+    ended = []
+
+    def endless(_):
+        # Nothing but the interrupt ends it.
+        condition = ob.plannerNonTerminatingCondition()
+        ended.append(True)
+        return condition
+
+    monkeypatch.setattr(bindings, "stop_after", endless)
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
-    began = time.perf_counter()
     with pytest.raises(KeyboardInterrupt):
-        plan(scenario, NAME, time_limit=30.0)
-    assert time.perf_counter() - began < 5.0
+        plan(scenario, NAME, time_limit=600.0)
+    assert ended == [True]
 
 
 def test_a_second_solve_goes_on_and_clear_begins_anew():

@@ -1,6 +1,7 @@
 """The lazy search on one level and over levels, against the eager roadmap and dense checks."""
 
-import time
+import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.kernels import roadmap_tables
 from ellipsoid_planning.metric import path_length
-from ellipsoid_planning.roadmap import tables
+from ellipsoid_planning.roadmap import level, tables
 from ellipsoid_planning.roadmap.eager import eager_roadmap, layer_orientations
 from ellipsoid_planning.roadmap.graph import explored_graph
 from ellipsoid_planning.roadmap.highway import EXHAUSTED, SOLVED, TIMEOUT, HighwayRoadmap
@@ -16,6 +17,7 @@ from ellipsoid_planning.roadmap.parameters import RoadmapParameters
 from ellipsoid_planning.world import World
 from tests.random_scenes import rotation
 from tests.roadmap.scenes import body, cage, components, configuration, pillars
+from tests.told import StopAt
 
 
 def never():
@@ -113,23 +115,25 @@ def test_refinement_ends_at_its_cap():
 
 
 @pytest.mark.parametrize("n", [2, 3])
-def test_refinement_never_keeps_one_waiting(n):
+@pytest.mark.parametrize("look", [1, 2, 10, 60])
+def test_refinement_ends_soon_after_it_is_told(n, look):
     # The start sees so little that level after level is exhausted at once.
-    cspace = cage(n, 300.0)
-    HighwayRoadmap(cspace).compile_kernels()
-    asked = [time.perf_counter()]
-
-    def should_stop():
-        asked.append(time.perf_counter())
-        return asked[-1] - asked[0] > 1.0
-
+    cspace, stop = cage(n, 300.0), StopAt(look)
     start, goal = configuration(cspace, *[0.0] * n), configuration(cspace, *[200.0] * n)
-    outcome = HighwayRoadmap(cspace).solve(start, goal, should_stop)
-    assert outcome.status in (TIMEOUT, EXHAUSTED)
-    asked.append(time.perf_counter())
-    # The finest level of all has 10⁵ layers and takes a fifth of a second to lay out.
-    assert np.median(np.diff(asked)) < 0.02
-    assert np.max(np.diff(asked)) < 0.6
+    assert HighwayRoadmap(cspace).solve(start, goal, stop).status == TIMEOUT
+    assert 0 <= stop.later <= 5
+
+
+@pytest.mark.parametrize(("each_lasts", "most"), [(1.0, 60), (0.0, 60 * 1024)])
+def test_bursts_that_last_long_are_cut_short(each_lasts, most, monkeypatch):
+    ticks = itertools.count()
+    clock = SimpleNamespace(perf_counter=lambda: each_lasts * next(ticks))
+    monkeypatch.setattr(level, "time", clock)
+    cspace, stop = cage(2, 60.0), StopAt(60)
+    planner = HighwayRoadmap(cspace)
+    ends = configuration(cspace, 40.0, 40.0), configuration(cspace, 0.0, 0.0)
+    assert planner.solve(*ends, stop).status == TIMEOUT
+    assert most / 100 < planner.statistics["expansions"] <= most
 
 
 def test_the_same_seed_gives_the_same_path():
@@ -216,9 +220,9 @@ def test_anytime_gives_out_ever_shorter_paths():
     parameters = RoadmapParameters(anytime=True, inflation=10.0)
     improved = 0
     for _ in range(6):
-        end, given = time.monotonic() + 0.5, []
+        given = []
         outcome = HighwayRoadmap(cspace, parameters).solve(
-            next(ends), next(ends), lambda end=end: time.monotonic() > end, given.append
+            next(ends), next(ends), StopAt(400), given.append
         )
         if outcome.status != SOLVED:
             continue

@@ -34,6 +34,6 @@ def photograph(page, folder):
         f"--screenshot={picture}",
         source.as_uri(),
     ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=True)
     messages = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
     return imread(picture)[:, :, :3], [m for m in messages if "GPU stall" not in m]

@@ -18,6 +18,8 @@ from planners.importing.libraries import library
 
 # A package's URDF is rarely deeper in it than this.
 ANCESTORS = 3
+FORMATS = (".dae", ".glb", ".gltf", ".obj", ".off", ".ply", ".stl")
+"""Of meshes; the library also reads archives, which a stranger's could fill the memory with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +59,32 @@ class MeshFiles:
         looked = dict.fromkeys(self._candidates(filename))
         for path in looked:
             if path.is_file():
-                return path
+                return self._checked(link, path)
         folders = ", ".join(dict.fromkeys(str(path.parent) for path in looked)) or "nowhere"
         raise UrdfError(
             f"{self.urdf}: link {link!r}: the mesh {filename!r} is not there; looked in {folders}; "
             "give the folder of its package, or of the meshes, with --mesh-dir"
         )
+
+    def _checked(self, link: str, path: Path) -> Path:
+        """A mesh that a URDF, which may be a stranger's, can have read."""
+        real = path.resolve()
+        folder = self.urdf.resolve().parent
+        allowed = [folder, *[above for above in list(folder.parents)[:ANCESTORS] if above.name]]
+        if self.mesh_dir is not None:
+            allowed.append(self.mesh_dir.resolve())
+        if not any(real.is_relative_to(place) for place in allowed):
+            raise UrdfError(
+                f"{self.urdf}: link {link!r}: the mesh {path} lies outside of the URDF's folder "
+                f"and the {ANCESTORS} above it; if you trust the file, name the mesh's folder with "
+                "--mesh-dir"
+            )
+        if path.suffix.lower() not in FORMATS:
+            raise UrdfError(
+                f"{self.urdf}: link {link!r}: cannot read the mesh {path}: expected one of the "
+                f"formats {', '.join(FORMATS)}; convert it"
+            )
+        return path
 
     def _candidates(self, filename: str) -> Iterator[Path]:
         """Where a file name may point: in --mesh-dir first, then beside the URDF and above it."""

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from ellipsoid_planning.cspace.of import cspace_of
 from scipy.spatial.transform import Rotation
 
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.safety import TableParameters, TabulatedSafety

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-
 from ellipsoid_planning.cspace.of import cspace_of
+
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import layout
 from ellipsoid_planning.robots.articulated import ArticulatedRobot, Link

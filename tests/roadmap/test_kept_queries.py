@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from ellipsoid_planning.cspace.of import cspace_of
+
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.outcome import SOLVED
 from ellipsoid_planning.roadmap import highway

@@ -82,7 +82,10 @@ def test_bad_groups(text, words, tmp_path):
 def test_unreadable_files(tmp_path):
     with pytest.raises(ScenarioError, match=r"missing\.txt: no such file"):
         space_group_from_text(tmp_path / "missing.txt")
-    (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "half").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ScenarioError, match="half: the text is damaged; save it as UTF-8"):
+        space_group_from_text(tmp_path / "half")
+    (tmp_path / "binary").write_bytes(b"\xfd\xff\x00")
     with pytest.raises(ScenarioError, match="expected a text file"):
         space_group_from_text(tmp_path / "binary")
 

@@ -50,7 +50,7 @@ def home(space):
 
 
 def calls(space, good):
-    """Everything of a C-space, its robot and their safety functions that takes one configuration."""
+    """Everything of a C-space, its robot and their safety that takes one configuration."""
     sampling = FreeIntervalSampling if isinstance(space.robot, RigidRobot) else ArticulatedSampling
     out, rigid = np.empty(len(good)), isinstance(space.robot, RigidRobot)
     tables = TabulatedSafety(space, COARSE, keep=False)

@@ -75,7 +75,9 @@ def _local_cluster(distributed: Any, workers: int) -> Any:
         n_workers=workers,
         threads_per_worker=1,
         processes=True,
-        dashboard_address=None,
+        # Without an address, its web server takes a known port, and complains if it is taken.
+        dashboard_address="127.0.0.1:0",
+        scheduler_kwargs={"dashboard": False},
         memory_limit=None,  # each task has its own, where it needs one
         host="127.0.0.1",
         preload=["ellipsoid_planning.quiet_worker"],

@@ -57,6 +57,11 @@ def test_the_runs_of_a_killed_worker_are_done_again(client):
     assert len(begun) > len(tasks)
 
 
+def test_two_clusters_get_along(client):
+    with cluster_client("local", workers=1) as other:
+        assert other.scheduler.address != client.scheduler.address
+
+
 def test_an_interrupt_ends_the_campaign(client):
     interrupted = threading.Event()
     threading.Timer(0.5, interrupted.set).start()

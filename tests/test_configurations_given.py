@@ -109,7 +109,7 @@ def test_a_single_configuration_is_refused_unless_it_is_one(kind):
         call(good)
         call(good.tolist())
         for what, given in wrong.items():
-            with pytest.raises(GeometryError, match=r"expected .*got ") as caught:
+            with pytest.raises(GeometryError, match="expected ") as caught:
                 call(given)
             assert "\n" not in str(caught.value), (name, what)
 

@@ -20,11 +20,11 @@ def checked_configuration(values: ArrayLike, size: int) -> Array:
     Raises:
         GeometryError: if it has another shape, or is not made of finite numbers.
     """
-    found = as_numbers(values, f"a configuration of {size} numbers")
+    found = as_numbers(values, f"a configuration of {size} finite numbers")
     if found.shape != (size,):
         raise GeometryError(
-            f"expected a configuration of {size} numbers, shape ({size},), got shape {found.shape}"
-            + ("; only calls on many, as are_valid, take rows" if found.ndim == 2 else "")
+            f"expected a configuration of {size} finite numbers, got shape {found.shape}"
+            + ("; are_valid and the like take rows" if found.ndim == 2 else "")
         )
     if not np.isfinite(found).all():
         raise GeometryError(
@@ -39,10 +39,10 @@ def checked_configurations(values: ArrayLike, size: int) -> Array:
     Raises:
         GeometryError: if they have another shape, or are not made of finite numbers.
     """
-    found = np.atleast_2d(as_numbers(values, f"configurations of {size} numbers"))
+    found = np.atleast_2d(as_numbers(values, f"configurations of {size} finite numbers"))
     if found.ndim != 2 or found.shape[1] != size:
         raise GeometryError(
-            f"expected configurations of {size} numbers, shape (m, {size}) or ({size},), "
+            f"expected configurations of {size} finite numbers, shape (m, {size}) or ({size},), "
             f"got shape {np.shape(values)}"
         )
     finite = np.isfinite(found)

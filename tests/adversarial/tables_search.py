@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from ellipsoid_planning.cspace.of import cspace_of
 from scipy.spatial.transform import Rotation
 
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.safety import TableParameters, TabulatedSafety
@@ -95,7 +95,7 @@ def search(n: int, shape: str, seed: int) -> Outcome:
     parameters = TableParameters(
         orientations=int(rng.integers(1, 60)), lines=int(rng.integers(1, 60))
     )
-    plan = plan_tables(cspace_of(_world(n), robot), parameters)
+    plan = plan_tables(CSpace(_world(n), robot), parameters)
     total = Outcome()
     for _ in range(4):
         configuration, way, turn = _corner(rng, plan, n)
@@ -118,7 +118,7 @@ def _touched(
     if np.any(np.abs(centre) > BOX - 1.0):  # it would move the table's box
         return Outcome()
     body = Ellipsoid(centre, own, body.semi_axes)
-    cspace = cspace_of(_world(n, body), robot)
+    cspace = CSpace(_world(n, body), robot)
     safety = TabulatedSafety(cspace, parameters, keep=False, workers=1)
     told, gap = bool(safety.answers([configuration])[0, 0]), _gap(part, body, configuration)
     false: tuple[Counterexample, ...] = ()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from ellipsoid_planning.cspace.of import cspace_of
 
+from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.geometry.ellipsoid import Ellipsoid
 from ellipsoid_planning.kernels import layout
 from ellipsoid_planning.robots.articulated import ArticulatedRobot, Link
@@ -35,7 +35,7 @@ def test_tables_of_links_on_long_levers_keep_the_robots_own_rounding() -> None:
     links = (Link("base"), Link("arm"), Link("tip"), Link("hand", (tip,)))
     robot = ArticulatedRobot(links, joints, "translating")
     obstacle = Ellipsoid.from_semi_axes([0.1, 0.1], [0.5, 0.0])
-    cspace = cspace_of(World(np.full(2, -1.0), np.full(2, 1.0), (obstacle,)), robot)
+    cspace = CSpace(World(np.full(2, -1.0), np.full(2, 1.0), (obstacle,)), robot)
     (plan,) = plan_tables(cspace, TableParameters(memory=3000)).tables
     scene = table_scene(plan)
     kept = scene[layout.CLEARANCE] - plan.resolution.inflation

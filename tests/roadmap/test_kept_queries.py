@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from ellipsoid_planning.cspace.of import cspace_of
 
 from ellipsoid_planning.cspace.space import CSpace
 from ellipsoid_planning.outcome import SOLVED
@@ -76,7 +75,7 @@ def test_levels_are_turned_alike_whichever_query_makes_them():
 
 
 def test_robots_with_joints():
-    cspace, random = cspace_of(slit(0.5), chain(3)), np.random.default_rng(7)
+    cspace, random = CSpace(slit(0.5), chain(3)), np.random.default_rng(7)
     starts = free(cspace, random, 3, [-12.0, -3.0, -3.0], [-6.0, 3.0, 3.0], 1.0)
     goals = free(cspace, random, 3, [6.0, -3.0, -3.0], [12.0, 3.0, 3.0], 1.0)
     assert_as_fresh(cspace, [(a[None], b[None]) for a, b in zip(starts, goals, strict=True)])

@@ -71,12 +71,12 @@ def cover(solids: Sequence[Solid], parts: int = 1) -> tuple[Ellipsoid, ...]:
 
 
 def union_volume(bodies: Sequence[Ellipsoid]) -> float:
-    """The volume of the union: exact for one body, to about one per cent for several."""
+    """The volume (area) of the union: exact for one body, to about one per cent for several."""
     if len(bodies) == 1:
         return _volume(bodies[0])
     total = 0.0
     for body in bodies:
-        points = body.centre + _ball_points(UNION_SAMPLES) @ body.matrix.T
+        points = body.centre + _ball_points(UNION_SAMPLES, body.dimension) @ body.matrix.T
         shared = np.sum([other.contains(points) for other in bodies if other is not body], axis=0)
         total += _volume(body) * float(np.mean(1.0 / (1.0 + shared)))
     return total
@@ -148,12 +148,13 @@ def _round_points(solid: Solid) -> Array:
     return solid.surface.reshape(-1, 3) if len(solid.rounds.centres) else np.zeros((0, 3))
 
 
-def _ball_points(count: int) -> Array:
-    """Points (count, 3) spread evenly in the unit ball."""
+def _ball_points(count: int, n: int = 3) -> Array:
+    """Points (count, n) spread evenly in the unit ball."""
     # Radii in the order of a low-discrepancy sequence, or the points would lie on a spiral.
-    radii = (((np.arange(count) + 1.0) * 0.5 * (math.sqrt(5.0) - 1.0)) % 1.0) ** (1.0 / 3.0)
-    return unit_directions(3, count) * radii[:, None]
+    radii = (((np.arange(count) + 1.0) * 0.5 * (math.sqrt(5.0) - 1.0)) % 1.0) ** (1.0 / n)
+    return unit_directions(n, count) * radii[:, None]
 
 
 def _volume(body: Ellipsoid) -> float:
-    return float(4.0 / 3.0 * math.pi * np.prod(body.semi_axes))
+    ball = math.pi if body.dimension == 2 else 4.0 / 3.0 * math.pi
+    return float(ball * np.prod(body.semi_axes))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import html
 import math
+import re
 from collections.abc import Iterable, Sequence
 
+from ellipsoid_planning.csv_text import csv_text
 from planners.benchmark.growth import growth_notes
 from planners.benchmark.run import RunRecord
 from planners.benchmark.summary import Quantile, Quartiles, Row
@@ -103,12 +104,18 @@ def markdown(rows: Sequence[Row]) -> str:
     lines.extend(_markdown_row(cells(row)) for row in rows)
     below = notes(rows)
     if below:
-        lines.extend(["", *(f"- {note}" for note in below)])
+        lines.extend(["", *(f"- {_markdown_text(note)}" for note in below)])
     return "\n".join(lines) + "\n"
 
 
 def _markdown_row(entries: Iterable[str]) -> str:
-    return "| " + " | ".join(entry.replace("|", "\\|") for entry in entries) + " |"
+    return "| " + " | ".join(map(_markdown_text, entries)) + " |"
+
+
+def _markdown_text(text: str) -> str:
+    """Text that Markdown shows as it is written: neither markup nor HTML."""
+    text = html.escape(" ".join(text.splitlines()), quote=False)
+    return re.sub(r"([\\`*_\[\]|~])", r"\\\1", text)
 
 
 def summary_csv(rows: Iterable[Row]) -> str:
@@ -159,8 +166,4 @@ def runs_csv(records: Iterable[RunRecord]) -> str:
 
 
 def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return text.getvalue()
+    return csv_text([header, *rows])

@@ -95,6 +95,6 @@ def _text(rows: Sequence[Row]) -> str:
     from planners.benchmark.tables import notes
 
     text = io.StringIO()
-    Console(file=text, width=_WIDTH).print(*_tables(rows), sep="\n")
+    Console(file=text, width=_WIDTH, emoji=False).print(*_tables(rows), sep="\n")
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
     return "\n".join([*lines, *notes(rows), ""])

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ellipsoid_planning.csv_text import csv_text
 from planners.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _json(result: Mapping[str, Any], rows: Iterator[Row]) -> Iterator[bytes]:
 
 
 def _csv(header: list[str], rows: Iterator[Row]) -> Iterator[bytes]:
-    yield (",".join(header) + "\n").encode()
+    yield csv_text([header]).encode()
     for given, coordinates in rows:
         numbers = (*given.values(), *coordinates.values())
         yield (",".join(map(repr, numbers)) + "\n").encode()

@@ -51,8 +51,9 @@ def show(
     """Show a packing model: group, cell, coordinates, and whether an arrangement is free.
 
     Where copies meet, it says which parts of which copies do, and how deep. The JSON has name,
-    group, operations, cell, volume_ratio (of the molecules to the cell), coordinates, arrangements
-    (of the grid) and configuration, free, meetings (of the arrangement).
+    group, operations, cell, volume_ratio (of the molecules to the cell, their parts' overlaps
+    counted once), coordinates, arrangements (of the grid) and configuration, free, meetings (of
+    the arrangement).
 
     [dim]Examples:[/dim]
 
@@ -159,8 +160,10 @@ def _middle(model: PackingModel) -> NDArray[np.float64]:
 
 def _summary(model: PackingModel, chosen: NDArray[np.float64] | None) -> dict[str, Any]:
     from ellipsoid_planning.crystal.packing.fingerprint import fingerprint
+    from ellipsoid_planning.geometry.covering import union_volume
 
     copies = model.group.order
+    bodies = model.molecule.bodies(_middle(model) if chosen is None else chosen)
     summary = {
         "name": model.name,
         "description": model.description,
@@ -171,7 +174,7 @@ def _summary(model: PackingModel, chosen: NDArray[np.float64] | None) -> dict[st
             "angles_deg": [float(angle) for angle in model.cell.angles_deg],
             "volume": model.cell.volume,
         },
-        "volume_ratio": copies * model.molecule.volume / model.cell.volume,
+        "volume_ratio": copies * union_volume(bodies) / model.cell.volume,
         "parts": [part.name for part in model.parts],
         "resolution": model.resolution,
         "coordinates": _ranges(model),
@@ -233,7 +236,8 @@ def _table(model: PackingModel, summary: dict[str, Any]) -> Table:
         + ("operation" if model.group.order == 1 else "operations"),
         "cell": f"{_numbers(summary['cell']['lengths'])}; "
         f"{_numbers(summary['cell']['angles_deg'])} degrees",
-        f"{unit} of the molecules": f"{summary['volume_ratio']:.1%} of the cell's, overlaps twice",
+        f"{unit} of the molecules": f"{summary['volume_ratio']:.1%} of the cell's"
+        + ("" if len(summary["parts"]) == 1 else ", to about 1 % of it; parts' overlaps once"),
         "parts": ", ".join(summary["parts"]),
         "resolution": f"{model.resolution:g}",
         "arrangements": f"{model.grid.count:,} in the grid",

@@ -228,14 +228,10 @@ def _numbers(elements: str) -> list[int]:
 def _write(csv: Path | None, rows: list[list[Any]]) -> None:
     if csv is None:
         return
-    import csv as csv_format
-    import io
-
+    from ellipsoid_planning.csv_text import csv_text
     from planners.view.writing import write_whole
 
-    text = io.StringIO()
-    csv_format.writer(text, lineterminator="\n").writerows(rows)
-    write_whole(csv, text.getvalue().encode())
+    write_whole(csv, csv_text(rows).encode())
     say(f"Wrote {csv}")
 
 

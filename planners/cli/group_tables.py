@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
 Report = dict[str, Any]
@@ -11,7 +12,7 @@ Report = dict[str, Any]
 
 def show(report: Report) -> list[Table]:
     """The group's kind, then its operations."""
-    kind = Table(title=f"Group {report['name']}", title_justify="left", show_header=False)
+    kind = Table(title=escape(f"Group {report['name']}"), title_justify="left", show_header=False)
     kind.add_column("what")
     kind.add_column("value")
     number = f" (no. {report['number']})" if report["number"] else ""
@@ -44,8 +45,8 @@ def subgroups(name: str, report: Report) -> list[Table]:
     found = report["subgroups"]
     normal = sum(entry["normal"] for entry in found)
     made = Table(
-        title=f"{name}, order {report['order']}: {len(found)} subgroups in {report['classes']} "
-        f"classes, {normal} normal",
+        title=f"{escape(name)}, order {report['order']}: {len(found)} subgroups "
+        f"in {report['classes']} classes, {normal} normal",
         title_justify="left",
     )
     made.add_column("class", justify="right")

@@ -117,7 +117,7 @@ def _print(imported: ImportedRobot) -> None:
     from ellipsoid_planning.scenario_yaml import document_text
 
     for table in _tables(imported):
-        Console(stderr=True).print(table)
+        Console(stderr=True, emoji=False).print(table)
     sys.stdout.write(document_text(imported.document()))
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 import stat
@@ -13,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ellipsoid_planning import atomic
+from ellipsoid_planning.csv_text import csv_text
 from ellipsoid_planning.errors import EllipsoidPlanningError
 from ellipsoid_planning.leftovers import remove_partial_files
 from planners.cli.interrupt import clean_up
@@ -111,24 +110,24 @@ def write_csv(result: PlanResult, output: Path) -> None:
     """Write the interpolated path: a header, then one row a configuration.
 
     The first column is the length travelled so far in OMPL's metric; headings and joint values
-    that are angles are in radians, quaternions (x, y, z, w). A joint's column has its name, a
+    that are angles are in radians and go on beyond ±π instead of jumping by 2π, quaternions are
+    (x, y, z, w) and keep their sign from row to row. A joint's column has its name, a
     ball joint's four have a suffix too. Every state of the path is among the rows.
 
     Raises:
         EllipsoidPlanningError: the file cannot be written.
     """
-    from planners.view.trajectory import follow
+    from planners.view.trajectory import follow, unwound
 
     scenario = result.scenario
     if result.path is None:
         raise EllipsoidPlanningError(f"{output}: there is no path to write")
     trajectory = follow(scenario.cspace(), result.path.configurations)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("travelled", *columns(scenario.robot)))
-    travelled, rows = trajectory.travelled.tolist(), trajectory.configurations.tolist()
-    writer.writerows([length, *row] for length, row in zip(travelled, rows, strict=True))
+    configurations = unwound(scenario.robot, trajectory.configurations)
+    travelled, rows = trajectory.travelled.tolist(), configurations.tolist()
+    header = ("travelled", *columns(scenario.robot))
+    lines = ([length, *row] for length, row in zip(travelled, rows, strict=True))
     try:
-        atomic.write_text(output, text.getvalue())
+        atomic.write_text(output, csv_text([header, *lines]))
     except OSError as error:
         raise EllipsoidPlanningError(f"{output}: cannot write the file: {error.strerror}") from None

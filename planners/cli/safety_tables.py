@@ -32,12 +32,13 @@ def make_tables(scenario: Scenario) -> TabulatedSafety:
 
 def _with_bar(scenario: Scenario) -> TabulatedSafety:
     from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress
 
     from ellipsoid_planning.safety.tabulated import TabulatedSafety
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(f"Safety tables of {scenario.name}", total=None)
+    with Progress(console=Console(stderr=True, emoji=False), transient=True) as bar:
+        task = bar.add_task(f"Safety tables of {escape(scenario.name)}", total=None)
         return TabulatedSafety(
             scenario.cspace(),
             on_progress=lambda done, total: bar.update(task, completed=done, total=total),

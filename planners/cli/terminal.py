@@ -28,14 +28,14 @@ def result_console() -> Console:
     """A rich console on stdout, for the tables of results."""
     from rich.console import Console
 
-    return Console()
+    return Console(emoji=False)
 
 
 def wide_console() -> Console:
     """As `result_console`, for wide tables: nothing is folded for a file or a pipe."""
     from rich.console import Console
 
-    return Console() if sys.stdout.isatty() else Console(width=WIDTH)
+    return Console(emoji=False, width=None if sys.stdout.isatty() else WIDTH)
 
 
 @contextmanager
@@ -49,8 +49,9 @@ def working(message: str) -> Iterator[None]:
         yield
         return
     from rich.console import Console
+    from rich.markup import escape
 
-    with Console(stderr=True).status(message):
+    with Console(stderr=True, emoji=False).status(escape(message)):
         yield
 
 
@@ -62,6 +63,7 @@ def stages(message: str) -> Iterator[Callable[[str], None]]:
         yield lambda _: None
         return
     from rich.console import Console
+    from rich.markup import escape
 
-    with Console(stderr=True).status(message) as status:
-        yield status.update
+    with Console(stderr=True, emoji=False).status(escape(message)) as status:
+        yield lambda message: status.update(escape(message))

@@ -131,6 +131,8 @@ def _in_the_middle(question: Question) -> tuple[Array, Mask, Array, Array]:
     if len(doubtful):
         # The search may have ended early: begin it elsewhere before giving up.
         u[doubtful] = _searched(middle.taken(doubtful), u[doubtful])
+    # A contact counts only where rounding in the bodies' places cannot have made it.
+    meet &= middle.gap(u) < -question.doubt
     gap = middle.gap(u) - question.doubt
     apart = difference(u, middle.offset, middle.first, middle.second, 1.0)
     return u, meet, gap, np.linalg.norm(apart, axis=1) + question.doubt

@@ -11,11 +11,13 @@ import numpy as np
 from ellipsoid_planning.errors import EllipsoidPlanningError
 from ellipsoid_planning.scenario import Scenario
 from planners.view import figures_plane, figures_space
+from planners.view.clearance_along import distances_along
 from planners.view.figures_clearance import draw_clearance
 from planners.view.figures_joints import draw_joint_slice
 from planners.view.figures_layer import draw_layer
 from planners.view.joint_slice import JointSlice
 from planners.view.layer_slice import LayerSlice
+from planners.view.plain_text import as_written
 from planners.view.trajectory import Trajectory, follow
 from planners.view.writing import write_whole
 
@@ -66,13 +68,13 @@ def draw(source: Scenario | PlanResult) -> Figure:
         _draw_panels(panels, scenario, None, view, "start")
         return drawn
     trajectory = follow(cspace, path.configurations)
-    distances = np.array([cspace.clearance(q) for q in trajectory.configurations])
-    narrowest = trajectory.configurations[int(np.argmin(distances))]
+    along = distances_along(scenario, trajectory)
+    narrowest = trajectory.configurations[int(np.argmin(along.moving))]
     view = _view(scenario, cspace, narrowest, trajectory.configurations)
     drawn, panels = _blank(scenario, [_panel_height(view), DISTANCE_HEIGHT])
     _draw_panels(panels, scenario, trajectory, view, "narrowest place")
     required, proved = cspace.clearance_required, path.min_clearance if path.certified else None
-    draw_clearance(panels[2], trajectory.travelled, distances, required, proved)
+    draw_clearance(panels[2], along, required, proved)
     return drawn
 
 
@@ -95,7 +97,7 @@ def _blank(scenario: Scenario, heights: list[float]) -> tuple[Figure, list[Axes]
     from matplotlib.figure import Figure
 
     drawn = Figure(figsize=(WIDTH, sum(heights)), layout="constrained")
-    drawn.suptitle(scenario.name, fontsize=13, fontweight="bold")
+    drawn.suptitle(as_written(scenario.name), fontsize=13, fontweight="bold")
     grid = drawn.add_gridspec(len(heights), 2, height_ratios=heights)
     panels = [drawn.add_subplot(grid[0, 0]), drawn.add_subplot(grid[0, 1])]
     if len(heights) > 1:

@@ -14,6 +14,7 @@ from planners.view.figures_benchmark_style import (
     plain_axes,
     time_axis,
 )
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +42,7 @@ def draw_boxes(
 
     labels = [label for label in looks if any(record.label == label for record in records)]
     drawn = Figure(figsize=(WIDTH, _AROUND + _ROW_HEIGHT * len(labels)), layout="constrained")
-    drawn.suptitle(name, fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
+    drawn.suptitle(as_written(name), fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
     panels = drawn.subplots(1, 3, sharey=True, width_ratios=(1.4, 1.0, 1.0))
     rows = [[record for record in records if record.label == label] for label in labels]
     styles = [looks[label] for label in labels]

@@ -20,6 +20,7 @@ from planners.view.figures_benchmark_style import (
     spread,
     time_axis,
 )
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,7 +109,7 @@ def _title(axes: Axes, name: str, runs: int, limit: float) -> None:
         f"open markers: at least half of the runs found no path within {limit:g} s"
     )
     texts = {
-        36: (f"{name}: planning time against clearance", 13, INK, "bold"),
+        36: (f"{as_written(name)}: planning time against clearance", 13, INK, "bold"),
         18: (explained, 9, QUIET, "normal"),
     }
     for up, (text, size, colour, weight) in texts.items():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from planners.benchmark.run import RunRecord
 from planners.view.figures_benchmark_style import GRID, INK, Style, plain_axes, spread, time_axis
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +34,11 @@ def draw_success(
     drawn = Figure(figsize=SIZE, layout="constrained")
     axes = drawn.add_subplot()
     axes.set_title(
-        f"{name}: solved runs against time", loc="left", fontsize=13, fontweight="bold", color=INK
+        f"{as_written(name)}: solved runs against time",
+        loc="left",
+        fontsize=13,
+        fontweight="bold",
+        color=INK,
     )
     axes.set_xscale("log")
     axes.set_xlabel("planning time", color=INK)

@@ -12,6 +12,7 @@ from planners.view.crystal_cell import DrawnCell, drawn_cell
 from planners.view.crystal_plane import draw_plane_cell, plane_window
 from planners.view.crystal_space import FINE, along, draw_space_cell, oblique, window
 from planners.view.figures import DOTS_PER_INCH
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +64,7 @@ def draw_cell(cell: DrawnCell, title: str = "") -> Figure:
 
     plane = cell.model.dimension == 2
     drawn = Figure(figsize=_plane_size(cell) if plane else SPACE_SIZE, layout="constrained")
-    drawn.suptitle(title or cell.model.name, fontsize=13, fontweight="bold")
+    drawn.suptitle(as_written(title or cell.model.name), fontsize=13, fontweight="bold")
     if plane:
         axes = drawn.add_subplot()
         draw_plane_cell(axes, cell)

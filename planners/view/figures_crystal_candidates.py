@@ -11,6 +11,7 @@ from planners.view.crystal_plane import draw_plane_cell, plane_window
 from planners.view.crystal_space import FINE, draw_space_cell, oblique, window
 from planners.view.crystal_tables import TARGET, Rows, candidates_rows, checked_candidates
 from planners.view.figures_crystal import add_legend, saved
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -95,7 +96,7 @@ def draw_candidates(
     drawn = Figure(
         figsize=(max(width, LEAST_WIDTH), height + below + MARGINS), layout="constrained"
     )
-    drawn.suptitle(title, fontsize=13, fontweight="bold")
+    drawn.suptitle(as_written(title), fontsize=13, fontweight="bold")
     parts: Any = drawn.subfigures(2, 1, height_ratios=(height + 0.5, below))
     upper, lower = parts
     has_target = bool(panels) and panels[0][0] == TARGET

@@ -8,6 +8,7 @@ import numpy as np
 
 from ellipsoid_planning.errors import CrystalError
 from planners.view.figures_crystal import saved
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,7 +70,8 @@ def draw_potential_map(
     values = np.asarray(potential.values(configurations)).reshape(shape)
     drawn = Figure(figsize=SIZE, layout="constrained")
     held = ", ".join(f"{_label(name)} = {value:g}{_unit(name)}" for name, value in others.items())
-    drawn.suptitle(f"{model.name}: {held}" if held else model.name, fontsize=12, fontweight="bold")
+    name = as_written(model.name)
+    drawn.suptitle(f"{name}: {held}" if held else name, fontsize=12, fontweight="bold")
     panels = drawn.subplots(1, 2)
     _draw_free(panels[0], free, axes_values)
     _draw_values(panels[1], values, free, axes_values, potential)

@@ -14,6 +14,7 @@ from planners.view.crystal_space import AZIMUTH, FINE
 from planners.view.embedding import outline
 from planners.view.figures_crystal import saved
 from planners.view.figures_plane import ellipse, finish
+from planners.view.plain_text import as_written
 from planners.view.ray_image import RayImage
 
 if TYPE_CHECKING:
@@ -72,7 +73,9 @@ def draw_molecule(model: PackingModel, configuration: ArrayLike | None = None) -
         values = np.array(configuration, dtype=float)
     drawn = Figure(figsize=SIZES[model.dimension], layout="constrained")
     count = len(model.keys)
-    drawn.suptitle(f"{model.name}: {count} degrees of freedom", fontsize=13, fontweight="bold")
+    drawn.suptitle(
+        f"{as_written(model.name)}: {count} degrees of freedom", fontsize=13, fontweight="bold"
+    )
     axes = drawn.add_subplot()
     draw = _draw_plane if model.dimension == 2 else _draw_space
     draw(axes, model, values)

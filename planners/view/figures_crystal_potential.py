@@ -12,6 +12,7 @@ from planners.view.crystal_cell import drawn_cell
 from planners.view.crystal_plane import plane_window
 from planners.view.figures_crystal import saved
 from planners.view.figures_plane import ellipse, finish
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,7 +66,9 @@ def draw_candidate_counts(
     axes.set_xlabel("$m_b$")
     axes.set_ylabel("free candidates")
     axes.set_ylim(0.0, 1.12 * axes.dataLim.ymax)
-    axes.set_title(title or "Free minima of GCF, one sought in each cell of a grid", fontsize=11)
+    axes.set_title(
+        as_written(title) or "Free minima of GCF, one sought in each cell of a grid", fontsize=11
+    )
     axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
@@ -130,7 +133,7 @@ def draw_mixture(model: PackingModel, configuration: ArrayLike, mixture: Gaussia
             ellipse(body, fill=False, edgecolor=colours.GOAL, linewidth=1.8, linestyle="--")
         )
     axes.set_title(
-        f"{model.name}: contours of the mixture, $m_b$ = {mixture.spread:g}, "
+        f"{as_written(model.name)}: contours of the mixture, $m_b$ = {mixture.spread:g}, "
         "in parts of its maximum;\ndashed: the ellipses",
         fontsize=10,
     )

@@ -10,6 +10,7 @@ import numpy as np
 from ellipsoid_planning.errors import CrystalError
 from planners.view import colours
 from planners.view.figures_crystal import saved
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -125,7 +126,9 @@ def draw_trends(trends: Sequence[ErrorTrend], title: str = "") -> Figure:
     drawn = Figure(figsize=size, layout="constrained")
     count = len(trends[0].values)
     trials = f"{count} trial{'s' if count != 1 else ''}"
-    drawn.suptitle(f"{title}: {trials}" if title else trials, fontsize=12, fontweight="bold")
+    drawn.suptitle(
+        f"{as_written(title)}: {trials}" if title else trials, fontsize=12, fontweight="bold"
+    )
     for index, trend in enumerate(trends):
         axes = drawn.add_subplot(rows, columns, index + 1)
         _draw_trend(axes, trend, HUES[index % len(HUES)])

@@ -9,6 +9,7 @@ import numpy as np
 from ellipsoid_planning.robots.joint import PRISMATIC
 from planners.view import colours
 from planners.view.figures_layer import add_legend
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +23,7 @@ def draw_joint_slice(axes: Axes, view: JointSlice, marked: str) -> None:
 
     With one joint there is a strip instead, and with ball joints only a remark.
     """
-    names = " and ".join(joint.name for joint in view.joints)
+    names = " and ".join(as_written(joint.name) for joint in view.joints)
     axes.set_title(f"Joints {names}" if len(view.joints) > 1 else names, loc="left", fontsize=11)
     axes.tick_params(colors="#606060", labelsize=8)
     if not view.joints:
@@ -69,4 +70,5 @@ def _shown(joint: Joint, value: float) -> float:
 
 
 def _label(joint: Joint) -> str:
-    return joint.name if joint.type == PRISMATIC else f"{joint.name} [°]"
+    name = as_written(joint.name)
+    return name if joint.type == PRISMATIC else f"{name} [°]"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ellipsoid_planning.robots.joint import CONTINUOUS, PRISMATIC, REVOLUTE
 from planners.view import colours
 from planners.view.figures_plane import finish
+from planners.view.plain_text import as_written
 
 if TYPE_CHECKING:
     import numpy as np
@@ -136,7 +137,7 @@ def _joint_values(view: LayerSlice) -> str:
         if joint.type in (REVOLUTE, CONTINUOUS, PRISMATIC):
             (value,) = view.configuration[robot.joint_slices[joint.name]]
             shown = f"{value:.3g}" if joint.type == PRISMATIC else _degrees(float(value))
-            said.append(f"{joint.name} {shown}")
+            said.append(f"{as_written(joint.name)} {shown}")
     line, count = ", ".join(said), len(robot.joint_slices)
     if count == 0:
         return ""

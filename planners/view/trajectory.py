@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ellipsoid_planning.robots.joint import CONTINUOUS, REVOLUTE
+from ellipsoid_planning.robots.joint import BALL, CONTINUOUS, REVOLUTE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,3 +108,27 @@ def _most_turn(robot: Robot, difference: NDArray[np.float64]) -> float:
     turning = {joint.name for joint in robot.joints if joint.type in (REVOLUTE, CONTINUOUS)}
     turns = [abs(difference[robot.joint_slices[name]][0]) for name in turning]
     return float(max(turns, default=0.0))
+
+
+def unwound(robot: Robot, configurations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return configurations (m, d) without jumps from row to row.
+
+    Headings and continuous joints go on beyond ±pi, and quaternions keep the sign that is nearer
+    to the row before.
+    """
+    rows = np.array(configurations, dtype=float)
+    for where in _turning(robot):
+        if where.stop - where.start == 1:
+            rows[:, where] = np.unwrap(rows[:, where], axis=0)
+            continue
+        products = np.sum(rows[1:, where] * rows[:-1, where], axis=1)
+        rows[1:, where] *= np.cumprod(np.where(products < 0.0, -1.0, 1.0))[:, None]
+    return rows
+
+
+def _turning(robot: Robot) -> list[slice]:
+    """Where headings, continuous joints and quaternions stand in a configuration."""
+    n, joints = robot.dimension, {joint.name: joint.type for joint in robot.joints}
+    base = [slice(n, robot.base_size)] if robot.rotates and robot.base_size > n else []
+    turning = (CONTINUOUS, BALL)
+    return base + [at for name, at in robot.joint_slices.items() if joints[name] in turning]

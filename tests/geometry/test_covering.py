@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 from ellipsoid_planning.errors import GeometryError
-from ellipsoid_planning.geometry import solids
+from ellipsoid_planning.geometry import Ellipsoid, solids
 from ellipsoid_planning.geometry.covering import cover, enclose, union_volume
 from ellipsoid_planning.geometry.triangles import are_inside, cut_triangles
 from tests.importing.descriptions import BEND_FACES, BEND_VERTICES
@@ -89,6 +89,19 @@ def test_more_parts_are_closer():
     solid = bend()
     volumes = [union_volume(cover([solid], parts)) for parts in (1, 2, 4)]
     assert volumes[1] < 0.6 * volumes[0] and volumes[2] < volumes[1]
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_what_two_bodies_share_counts_once(n):
+    one, two = (Ellipsoid.from_semi_axes(np.full(n, 1.0), [x, *[0.0] * (n - 1)]) for x in (0, 1.0))
+    # The lens of two unit discs or balls whose centres are 1 apart.
+    whole, lens = (
+        (math.pi, 2.0 * math.pi / 3.0 - math.sqrt(3.0) / 2.0)
+        if n == 2
+        else (4.0 * math.pi / 3.0, 5.0 * math.pi / 12.0)
+    )
+    assert union_volume([one, two]) == pytest.approx(2.0 * whole - lens, rel=0.01)
+    assert union_volume([one, one]) == pytest.approx(whole)
 
 
 def test_curved_solids_that_are_cut_stay_covered():

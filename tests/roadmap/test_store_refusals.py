@@ -10,6 +10,7 @@ from ellipsoid_planning.errors import RoadmapError
 from ellipsoid_planning.geometry import Ellipsoid
 from ellipsoid_planning.roadmap.highway import HighwayRoadmap
 from ellipsoid_planning.roadmap.parameters import RoadmapParameters
+from ellipsoid_planning.roadmap.store_format import FORMAT
 from ellipsoid_planning.robots.rigid import RigidRobot
 from ellipsoid_planning.world import World
 from tests.roadmap.stored import (
@@ -130,7 +131,7 @@ def test_a_failed_write_leaves_the_older_file(planned, file, monkeypatch):
     assert list(file.parent.iterdir()) == [file]
 
 
-@pytest.mark.parametrize(("name", "value"), [("format", 2), ("version", "9.0")])
+@pytest.mark.parametrize(("name", "value"), [("format", FORMAT + 1), ("version", "9.0")])
 def test_other_formats_and_versions_are_refused_but_may_be_replaced(planned, file, name, value):
     cspace, roadmap = planned
     changed_header(file, lambda header: header.update({name: value}))

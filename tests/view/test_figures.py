@@ -9,6 +9,8 @@ from matplotlib.patches import Ellipse
 
 from ellipsoid_planning.errors import EllipsoidPlanningError
 from ellipsoid_planning.geometry import Ellipsoid
+from ellipsoid_planning.result import PathResult, PlanResult
+from ellipsoid_planning.robots import ArticulatedRobot, Joint, Link
 from ellipsoid_planning.scenario import Scenario
 from ellipsoid_planning.world import World
 from planners.view import colours
@@ -194,3 +196,27 @@ def test_an_unknown_format_is_a_clean_error(name, tmp_path):
 def test_a_missing_folder_is_a_clean_error(tmp_path):
     with pytest.raises(EllipsoidPlanningError, match="does not exist"):
         figure(planar_scenario(), tmp_path / "missing" / "picture.png")
+
+
+def test_the_distance_of_a_fixed_arm_is_that_of_what_moves():
+    def limb(name, at):
+        return Link(name, (Ellipsoid.from_semi_axes([0.5, 0.2], [at, 0.0]),))
+
+    joint = Joint.of("j", "base", "arm", "revolute", [0.0, 0.0], None, None, -2.0, 2.0)
+    robot = ArticulatedRobot((limb("base", 0.0), limb("arm", 1.0)), (joint,), "fixed")
+    floor, post = (
+        Ellipsoid.from_semi_axes([5.0, 1.0], [0.0, -1.3]),
+        Ellipsoid.from_semi_axes([0.3, 0.3], [2.0, 0.5]),
+    )
+    world = World(np.full(2, -6.0), np.full(2, 6.0), (floor, post))
+    scenario = Scenario("arm", world, robot, np.array([0.7]), np.array([1.9]))
+    path = PathResult.from_configurations(
+        robot, [scenario.start, scenario.goal], min_clearance=0.0, certified=False
+    )
+    distance = draw(PlanResult(scenario, "by hand", "solved", path=path)).axes[2]
+    curve, least = distance.get_lines()
+    assert scenario.cspace().clearance(scenario.goal) == pytest.approx(0.1)
+    assert np.ptp(curve.get_ydata()) > 0.3
+    assert least.get_xdata() == [0.0]
+    assert distance.get_title(loc="right").endswith("not drawn: what does not move, 0.1")
+    assert not distance.texts

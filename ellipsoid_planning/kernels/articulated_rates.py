@@ -20,7 +20,7 @@ from .kinematics import (
 )
 from .layout import DIMENSION
 from .linear import norm, product
-from .motion import SMALL_ROTATION
+from .motion import SMALL_ROTATION, unevenness
 
 # Below this rotation OMPL surely keeps the first orientation until the end, if the squares of both
 # quaternions are 1 to within _UNIT: their product then exceeds 1 - 4.5e-10 - 5e-10.
@@ -28,8 +28,6 @@ HELD_ROTATION = 6e-5
 _UNIT = 5e-10
 # From this turn on rounding may decide which way OMPL turns.
 _HALF_TURN = math.pi - 1e-8
-# Squares of quaternions that differ from 1 by more are no state of OMPL's.
-_MOST_UNEVEN = 2e-9
 # A joint's value start + s·rate takes three roundings here, and as many in OMPL.
 _VALUE_ROUNDING = 4.0 * 2.220446049250313e-16
 # Columns of the bounds on a body's motion: angular rate (signed in the plane), the speed of its
@@ -49,27 +47,13 @@ LOCAL = 4
 
 
 @kernel
-def _unevenness(row, v):
-    """By how much the square of a quaternion differs from 1, as far as OMPL bears it; else 0.
-
-    Other quaternions stand for their rotations, whatever their length.
-    """
-    square = row[v] ** 2 + row[v + 1] ** 2 + row[v + 2] ** 2 + row[v + 3] ** 2
-    away = abs(square - 1.0)
-    return away if away <= _MOST_UNEVEN else 0.0
-
-
-@kernel
 def _rotation_rate(first, last, v, rates, at):
     """Write the rotation vector between the quaternions at ``v`` to ``rates``: its angle.
 
-    In the fourth place it writes how far [rad] OMPL's rotation may be from this one at the same s.
-    OMPL interpolates quaternions as they are: if their squares differ from 1 by d₁ and d₂, it
-    is off by at most (d₁ + d₂)/2, most of it half-way through half a turn (d₂ ≠ d₁ shifts the
-    mixture's weights, d₁ + d₂ the angle that it takes for theirs). Twice that also covers the
-    rounding of d₁ and d₂.
+    In the fourth place it writes how far [rad] OMPL's rotation may be from this one at the same s
+    (see motion.unevenness).
     """
-    rates[at + 3] = _unevenness(first, v) + _unevenness(last, v)
+    rates[at + 3] = unevenness(first, v) + unevenness(last, v)
     x, y, z, w = product(
         last[v], last[v + 1], last[v + 2], last[v + 3],
         -first[v], -first[v + 1], -first[v + 2], first[v + 3],

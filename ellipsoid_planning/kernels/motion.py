@@ -44,6 +44,7 @@ from .layout import (
     DIMENSION,
     NODE_OBSTACLE,
     PART_RADIUS,
+    PART_REACH,
     PLACED,
     PLACED_CENTRE,
     PLACED_MATRIX,
@@ -66,7 +67,11 @@ SMALL_ROTATION = 2e-4
 HALF_TURN = 1e-9
 # Where a motion's workspace tells how many proofs a pair may take before it is refused.
 BUDGET = 14
-MOTION = 15
+# Where it tells how far [rad] OMPL's rotation may be from the motion's at the same s.
+UNEVEN = 15
+MOTION = 16
+# Squares of quaternions that differ from 1 by more are no state of OMPL's.
+_MOST_UNEVEN = 2e-9
 _MOST_PROOFS = 1e6
 _STACK = 128
 
@@ -197,6 +202,20 @@ def _arena_margin(scene, arenas, a, parts, i, motion, s, clearance, way, exact, 
 
 
 @kernel
+def unevenness(row, v):
+    """By how much the square of the quaternion at ``v`` differs from 1; 0 if OMPL refuses it.
+
+    Such a one stands for its rotation, whatever its length. OMPL interpolates the others as they
+    are: between two whose squares differ from 1 by d₁ and d₂, its rotation at s is off by at
+    most (d₁ + d₂)/2, most of it half-way through half a turn (d₁ ≠ d₂ shifts the mixture's weights,
+    and the angle is that of the product). Twice that also covers the rounding of both.
+    """
+    square = row[v] ** 2 + row[v + 1] ** 2 + row[v + 2] ** 2 + row[v + 3] ** 2
+    away = abs(square - 1.0)
+    return away if away <= _MOST_UNEVEN else 0.0
+
+
+@kernel
 def _stays_in_arena(scene, arenas, a, parts, i, motion, clearance, way, placed, stack):
     """Prove that part ``i`` stays in arena ``a``: number of proofs, or its negative if refused."""
     nx, ny, nz, angle = motion[10], motion[11], motion[12], motion[13]
@@ -205,10 +224,11 @@ def _stays_in_arena(scene, arenas, a, parts, i, motion, clearance, way, placed, 
     radius = norm(rx - rn * nx, ry - rn * ny, rz - rn * nz) + parts[i, PART_RADIUS]
     size = inverse_size(arenas, a, BODY_WHITEN if way == SHRINK_ARENA else BODY_INVERSE)
     bulge = angle * angle * radius * size / 8.0
+    slack = motion[UNEVEN] * parts[i, PART_REACH] * size
     count = 2
     first = _arena_margin(scene, arenas, a, parts, i, motion, 0.0, clearance, way, False, placed)
     last = _arena_margin(scene, arenas, a, parts, i, motion, 1.0, clearance, way, False, placed)
-    if min(first, last) >= bulge:
+    if min(first, last) >= bulge + slack:
         return count
     first = _arena_margin(scene, arenas, a, parts, i, motion, 0.0, clearance, way, True, placed)
     last = _arena_margin(scene, arenas, a, parts, i, motion, 1.0, clearance, way, True, placed)
@@ -217,9 +237,9 @@ def _stays_in_arena(scene, arenas, a, parts, i, motion, clearance, way, placed, 
     while depth > 0:
         depth -= 1
         low, high, first, last = stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3]
-        if not min(first, last) >= 0.0 or count > motion[BUDGET] or high - low < 1e-14:
+        if not min(first, last) >= slack or count > motion[BUDGET] or high - low < 1e-14:
             return -count
-        if min(first, last) >= bulge * (high - low) ** 2:
+        if min(first, last) >= bulge * (high - low) ** 2 + slack:
             continue
         middle = 0.5 * (low + high)
         count += 1
@@ -251,7 +271,6 @@ def _sweep_is_free(scene, motion, clearance, placed, stack):
     obstacles, arenas = obstacle_rows(scene), arena_rows(scene)
     parts, tree = part_rows(scene), tree_rows(scene)
     nx, ny, nz, angle = motion[10], motion[11], motion[12], motion[13]
-    required = clearance + 2.0 * ROUNDING * scene[SCALE]
     total = 0
     for i in range(parts.shape[0]):
         for a in range(arenas.shape[0]):
@@ -266,6 +285,8 @@ def _sweep_is_free(scene, motion, clearance, placed, stack):
                 return count - total
             total += count
     for i in range(parts.shape[0]):
+        required = clearance + 2.0 * ROUNDING * scene[SCALE]
+        required += motion[UNEVEN] * parts[i, PART_REACH]
         rx, ry, rz = _place_at(parts, i, motion, 0.5, placed)
         rn = rx * nx + ry * ny + rz * nz
         swing = 2.0 * norm(rx - rn * nx, ry - rn * ny, rz - rn * nz) * math.sin(0.25 * angle)
@@ -337,6 +358,7 @@ def prove_motion(scene, first, last, clearance, motion, placed, stack):
             in_bounds(scene, end[0], end[1], end[2]) and is_rotation(end[3], end[4], end[5], end[6])
         ):
             return -1
+    motion[UNEVEN] = unevenness(first, 3) + unevenness(last, 3)
     move = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
     # Orientations r and q are joined by r q⁻¹, in the world frame.
     tx, ty, tz, tw = product(

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from ellipsoid_planning.cspace.of import cspace_of
 from numpy.typing import NDArray
 
-from ellipsoid_planning.cspace.of import cspace_of
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
 from ellipsoid_planning.robots.joint import FIXED
 from ellipsoid_planning.robots.tree import joints_in_order

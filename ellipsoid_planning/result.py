@@ -34,7 +34,8 @@ class PathResult:
         length: OMPL's path length.
         base_travel: how far the robot's base travels, in the scenario's unit of length.
         min_clearance: a proved lower bound of the distance to obstacles and arena boundary
-            along the path; infinite when there are neither.
+            along the path; infinite when there are neither. Not certified: 0, or less where
+            the path was seen to meet them.
         certified: True if every motion is proved collision-free in continuous time.
     """
 

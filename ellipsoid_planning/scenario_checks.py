@@ -34,7 +34,7 @@ def check_endpoints(scenario: Scenario, cspace: CSpace | None = None) -> None:
         cspace: its configuration space, if there is one already.
 
     Raises:
-        ScenarioError: naming start or goal, the part, what it hits or leaves, and how deep; also
+        ScenarioError: naming start or goal, the part, what it hits, leaves or is too close to; also
             when parts of the robot hit each other.
     """
     check_fit(scenario)
@@ -139,20 +139,9 @@ def _too_large(scenario: Scenario, path: Path, problem: str) -> ScenarioError:
 
 
 def _contacts_problem(which: str, contacts: tuple[Contact, ...], scenario: Scenario) -> str:
-    texts = [_contact_text(contact) for contact in contacts[:MOST_CONTACTS]]
+    texts = [contact.message for contact in contacts[:MOST_CONTACTS]]
     rest = len(contacts) - len(texts)
     if rest > 0:
         texts.append(f"{rest} more")
     wanted = f" with the clearance {scenario.clearance:g}" if scenario.clearance else ""
     return f"expected a free {which}{wanted}, but {'; '.join(texts)}; move the {which}"
-
-
-def _contact_text(contact: Contact) -> str:
-    amount = f"by {contact.depth:.6g}"
-    if contact.kind == "obstacle":
-        return f"part {contact.part!r} hits obstacle {contact.body!r} {amount}"
-    if contact.kind == "arena":
-        return f"part {contact.part!r} leaves arena {contact.body!r} {amount}"
-    if contact.kind == "self":
-        return f"part {contact.part!r} hits part {contact.body!r} of the robot itself {amount}"
-    return str(contact.message)

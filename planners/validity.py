@@ -48,7 +48,7 @@ class EllipsoidValidityChecker(ob.StateValidityChecker):
         return self._check(state)
 
     def clearance(self, state: ob.State) -> float:
-        """Proved lower bound of the distance to obstacles and arenas; negative: penetration."""
+        """Signed distance to obstacles and arena boundaries, see `CSpace.clearance`."""
         return float(self.cspace.clearance(read_configuration(state, self.cspace)))
 
 

@@ -36,8 +36,8 @@ class StubSpace:
     ("contact", "words"),
     [
         (
-            {"kind": "self", "part": "ear 1", "body": "face", "depth": 0.5},
-            "part 'ear 1' hits part 'face' of the robot itself by 0.5; move the start",
+            {"kind": "self", "message": "part 'ear 1' hits part 'face' of the robot itself"},
+            "part 'ear 1' hits part 'face' of the robot itself; move the start",
         ),
         (
             {"kind": "limits", "depth": 0.1, "message": "joint 'ear' is out of its limits"},

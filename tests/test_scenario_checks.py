@@ -26,7 +26,9 @@ class StubSpace:
 
 
 def contact(kind, part="face", body="rock", depth=0.25):
-    return SimpleNamespace(kind=kind, part=part, body=body, depth=depth, message="out of bounds")
+    verb = {"obstacle": "hits", "arena": "leaves"}.get(kind, "is out of bounds of")
+    text = f"part {part!r} {verb} {kind} {body!r} by {depth}"
+    return SimpleNamespace(kind=kind, part=part, body=body, depth=depth, message=text)
 
 
 def arena_scenario(part_axes, arena_axes, clearance=0.0, rotates=True, turn=None):

@@ -112,10 +112,9 @@ class ArticulatedCSpace(CSpace, robots=ArticulatedRobot):
         return out
 
     def clearance(self, configuration: ArrayLike) -> float:
-        """Proved lower bound of the distance to obstacles and arena boundaries.
+        """Signed distance to obstacles and arena boundaries, as `CSpace.clearance`.
 
-        Negative where they meet: minus the penetration along one direction, or −1 outside an
-        arena. Infinite in an empty world. The robot's parts against each other do not count.
+        The robot's parts against each other do not count.
         """
         row = self.pose(configuration)
         value = articulated_validity.articulated_clearance(self.scene, self.kinematics, row)
@@ -155,13 +154,13 @@ class ArticulatedCSpace(CSpace, robots=ArticulatedRobot):
         return counts
 
     def motion_clearance(self, first: ArrayLike, second: ArrayLike) -> float:
-        """Proved lower bound of the clearance along a motion; negative if it is not proved free.
+        """Proved lower bound of the clearance along a motion; −inf if it is not proved free.
 
         Infinite in an empty world; else within about 1e-3 of the smallest sampled clearance where
         proofs reach that far.
         """
         if not self.is_motion_valid(first, second):
-            return -1.0
+            return -math.inf
         if not (self.world.obstacles or self.world.arenas):
             return math.inf
         samples = np.linspace(0.0, 1.0, _CLEARANCE_SAMPLES)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ellipsoid_planning.cspace.articulated_packing import may_meet
 from ellipsoid_planning.cspace.contacts import Contact
+from ellipsoid_planning.kernels import depths, layout, self_collision, separation
 from ellipsoid_planning.kernels import kinematics as tables
-from ellipsoid_planning.kernels import layout, self_collision, separation
 from ellipsoid_planning.robots.articulated import ArticulatedRobot
 from ellipsoid_planning.robots.joint import PRISMATIC
 
@@ -26,14 +26,14 @@ def limit_contacts(robot: ArticulatedRobot, configuration: Array) -> list[Contac
         if joint.value_count != 1:
             continue
         value = float(configuration[robot.joint_slices[joint.name]][0])
-        depth = max(joint.lower - value, value - joint.upper)
-        if not depth <= LIMIT_TOLERANCE:
+        excess = max(joint.lower - value, value - joint.upper)
+        if not excess <= LIMIT_TOLERANCE:
             scale, unit = (1.0, "") if joint.type == PRISMATIC else (math.degrees(1.0), " deg")
             text = (
                 f"joint {joint.name!r} = {value * scale:g}{unit} is out of its limits "
                 f"[{joint.lower * scale:g}, {joint.upper * scale:g}]"
             )
-            contacts.append(Contact("limits", "", joint.name, depth, text))
+            contacts.append(Contact("limits", "", joint.name, excess, text))
     return contacts
 
 
@@ -53,8 +53,13 @@ def self_contacts(
             if not pairs[i, j]:
                 continue
             second = robot.parts[j]
-            gap = separation.separation(body, 0, placed, j, 0.5, math.inf, separation.CONVERGE)[0]
+            gap, *u, _ = separation.separation(
+                body, 0, placed, j, 0.5, math.inf, separation.CONVERGE
+            )
             if not gap > required:
-                text = f"part {first.name!r} meets part {second.name!r} (depth {-gap:.6g})"
-                contacts.append(Contact("self", first.name, second.name, float(-gap), text))
+                found = depths.least_depth(body, 0, placed, j, *u, robot.dimension == 2)
+                gap = float(min(max(gap, found), 0.0))
+                text = f"part {first.name!r} hits part {second.name!r} of the robot itself"
+                text += f" by {-gap:.6g}"
+                contacts.append(Contact("self", first.name, second.name, -gap, text, gap))
     return contacts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,9 +24,11 @@ class Contact:
         kind: 'obstacle', 'arena', 'bounds', or of articulated robots 'self' or 'limits'.
         part: name of the robot's part; empty for 'bounds' and 'limits'.
         body: name of the obstacle, arena, other part or joint; the coordinate for 'bounds'.
-        depth: how much is missing, in the scenario's unit: the part would have to move at most
-            that far (obstacle), or sticks out that far (arena, bounds), the clearance included.
+        depth: how much is missing, in the scenario's unit (of joints: rad or that unit): for
+            obstacles and arenas the clearance asked for less ``gap``; else how far it is out.
         message: the whole in one sentence.
+        gap: signed distance of the two as of `CSpace.clearance`; not a number for 'bounds' and
+            'limits'.
     """
 
     kind: str
@@ -33,6 +36,7 @@ class Contact:
     body: str
     depth: float
     message: str
+    gap: float = math.nan
 
 
 def bound_contacts(world: World, position: Array) -> list[Contact]:
@@ -63,20 +67,35 @@ def placed_contacts(world: World, robot: Robot, scene: Array, placed: Array) -> 
     inside = np.empty((len(robot.parts), len(world.arenas)), dtype=np.bool_)
     validity.in_arenas(scene, placed, inside)
     rooms = np.empty(inside.shape)
-    validity.arena_gaps(scene, placed, rooms)
+    if not inside.all():
+        validity.arena_gaps(scene, placed, rooms)
     clearance = float(scene[layout.CLEARANCE])
-    required = clearance + layout.ROUNDING * float(scene[layout.SCALE])
     contacts = []
     for i, part in enumerate(robot.parts):
-        for j in np.flatnonzero(~(gaps[i] > required)):
-            body, missing = world.obstacles[j], required - gaps[i, j]
-            verb = "meets" if gaps[i, j] <= 0.0 else f"is closer than {clearance:g} to"
-            text = f"part {part.name!r} {verb} obstacle {body.name!r} (depth {missing:.6g})"
-            contacts.append(Contact("obstacle", part.name, body.name, float(missing), text))
+        # Gaps have the margin for rounding off already.
+        for j in np.flatnonzero(~(gaps[i] > clearance)):
+            name = world.obstacles[j].name
+            contacts.append(_obstacle_contact(part.name, name, float(gaps[i, j]), clearance))
         for a in np.flatnonzero(~inside[i]):
-            arena = world.arenas[a]
-            missing = max(required - rooms[i, a], 0.0)
-            verb = "leaves" if rooms[i, a] < 0.0 else f"is closer than {clearance:g} to the wall of"
-            text = f"part {part.name!r} {verb} arena {arena.name!r} (by {missing:.6g})"
-            contacts.append(Contact("arena", part.name, arena.name, float(missing), text))
+            room = float(rooms[i, a])
+            contacts.append(_arena_contact(part.name, world.arenas[a].name, room, clearance))
     return contacts
+
+
+def _obstacle_contact(part: str, body: str, gap: float, clearance: float) -> Contact:
+    if gap > 0.0:
+        verb, amount = "is closer to", f", {gap:.6g}, than the clearance {clearance:g}"
+    else:
+        verb, amount = "hits", f" by {-gap:.6g}"
+    text = f"part {part!r} {verb} obstacle {body!r}{amount}"
+    return Contact("obstacle", part, body, clearance - gap, text, gap)
+
+
+def _arena_contact(part: str, body: str, gap: float, clearance: float) -> Contact:
+    if gap > 0.0:
+        verb = "is closer to the boundary of"
+        amount = f", {gap:.6g}, than the clearance {clearance:g}"
+    else:
+        verb, amount = "leaves", f" by {-gap:.6g}"
+    text = f"part {part!r} {verb} arena {body!r}{amount}"
+    return Contact("arena", part, body, clearance - gap, text, gap)

@@ -11,13 +11,13 @@ from .validity import clearance_of
 
 @kernel
 def motion_clearance(scene, first, last, samples, steps):
-    """A proved lower bound of the clearance along a motion, 0 or less if it is not proved free.
+    """A proved lower bound of the clearance along a motion, −inf if it is not proved free.
 
     Sampled clearances bound it from above; ``steps`` proofs bisect towards that.
     """
     motion, placed, stack = motion_workspaces()
     if not prove_motion(scene, first, last, scene[CLEARANCE], motion, placed, stack) > 0:
-        return -1.0
+        return -math.inf
     low = scene[CLEARANCE]
     high = 2.0 * scene[SCALE]
     move = (last[0] - first[0], last[1] - first[1], last[2] - first[2])

@@ -177,11 +177,11 @@ def _obstacle_gap(obstacles, j, parts, placed, i, scene):
 
 @kernel
 def obstacle_gaps(scene, placed, out):
-    """Converged gaps, shape (k, m), of every part and obstacle; minus the depth where they meet."""
+    """Proved gaps, shape (k, m), of every part and obstacle; minus the depth where they meet."""
     obstacles, parts = obstacle_rows(scene), part_rows(scene)
     for i in range(placed.shape[0]):
         for j in range(obstacles.shape[0]):
-            out[i, j] = _signed_gap(obstacles, j, parts, placed, i, scene)
+            out[i, j] = _obstacle_gap(obstacles, j, parts, placed, i, scene)
 
 
 @kernel

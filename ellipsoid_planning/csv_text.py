@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Sequence
 
+# Coordinate triplets such as -x,y+1/2,-z: no formula, and data to read back.
+_TRIPLET = re.compile(r"[-+xyz0-9/]+(?:,[-+xyz0-9/]+){1,2}")
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 _END = "\r\n"  # csv quotes the characters of its line ends only, so it gets both
 
@@ -25,9 +28,9 @@ def csv_text(rows: Iterable[Sequence[object]]) -> str:
 
 def csv_cell(cell: object) -> object:
     """Return a cell, with an apostrophe before text that would be taken for a formula."""
-    if isinstance(cell, str) and cell.lstrip(" \n").startswith(_FORMULAS) and not _is_number(cell):
-        return f"'{cell}"
-    return cell
+    if not isinstance(cell, str) or not cell.lstrip(" \n").startswith(_FORMULAS):
+        return cell
+    return cell if _is_number(cell) or _TRIPLET.fullmatch(cell) else f"'{cell}"
 
 
 def _is_number(text: str) -> bool:

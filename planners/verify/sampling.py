@@ -23,7 +23,7 @@ _Bound = Callable[[Robot, Array, Array], Array]
 
 _FIRST_SAMPLES = 2000
 _FEWEST_A_MOTION = 16
-_MOST_SAMPLES = 30000
+_MOST_SAMPLES = 8000
 _ROUNDS = 40
 _CLOSE_TO_SMALLEST = 0.9
 

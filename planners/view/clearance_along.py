@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from ellipsoid_planning.cspace.of import cspace_of
 from numpy.typing import NDArray
 
 from ellipsoid_planning.robots.articulated import FIXED_BASE, ArticulatedRobot
@@ -35,14 +34,16 @@ class Distances:
 
 def distances_along(scenario: Scenario, trajectory: Trajectory) -> Distances:
     """Measure distances at the samples of a trajectory."""
+    from ellipsoid_planning.cspace import CSpace
+
     space, resting = scenario.cspace(), np.inf
     robot = scenario.robot
     if isinstance(robot, ArticulatedRobot) and robot.base == FIXED_BASE:
         still = _resting_links(robot)
         if {link in still for link in robot.part_links} == {True, False}:
             base, arm = _with_parts_of(robot, still), _without_parts_of(robot, still)
-            space = cspace_of(scenario.world, arm, scenario.clearance)
-            alone = cspace_of(scenario.world, base, scenario.clearance)
+            space = CSpace(scenario.world, arm, scenario.clearance)
+            alone = CSpace(scenario.world, base, scenario.clearance)
             resting = alone.clearance(trajectory.configurations[0])
     moving = np.array([space.clearance(q) for q in trajectory.configurations])
     return Distances(trajectory.travelled, moving, float(resting))

@@ -89,7 +89,7 @@ def test_cosets(tmp_path):
         (("show", "P2121"), ("P2121", "did you mean")),
         (("show",), ("NAME", "--file", "neither")),
         (("show", "P1", "--file", "ops.txt"), ("both",)),
-        (("table", "--file", "missing.txt"), ("missing.txt", "cannot read")),
+        (("table", "--file", "missing.txt"), ("missing.txt", "no such file")),
         (("subgroups", "--file", "ops.txt"), ("ops.txt", "g_2 o g_2 =", "is not among them")),
         (("is-normal", "P4", "--elements", "1,9"), ("no element 9", "from 1 to 4")),
         (("is-subgroup", "P4", "--elements", "1;2"), ("--elements 1;2", "commas")),

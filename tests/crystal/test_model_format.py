@@ -127,7 +127,12 @@ SPATIAL = [
     ),
     ("step: 10}\n    beta", "step: 0.0001}\n    beta", "search", "larger steps"),
     ("semi_axes: [6, 6, 8]", "semi_axes: [1e-6, 1e-6, 8e6]", "cell", "long.*cells"),
-    ("position: [0, 0, 8]", "position: [0, 0, 1e300]", "molecule", "far from its origin"),
+    (
+        "position: [0, 0, 8]",
+        "position: [0, 0, 1e300]",
+        "molecule.joints[0].origin.position[2]",
+        "1e\\+12",
+    ),
     ("name: left_roll\n      ", "name: alpha\n      ", "molecule.joints[0].name", "rename this"),
 ]
 

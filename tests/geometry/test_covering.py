@@ -101,7 +101,8 @@ def test_what_two_bodies_share_counts_once(n):
         else (4.0 * math.pi / 3.0, 5.0 * math.pi / 12.0)
     )
     assert union_volume([one, two]) == pytest.approx(2.0 * whole - lens, rel=0.01)
-    assert union_volume([one, one]) == pytest.approx(whole)
+    again = Ellipsoid.from_semi_axes(np.full(n, 1.0))
+    assert union_volume([one, again]) == pytest.approx(whole)
 
 
 def test_curved_solids_that_are_cut_stay_covered():

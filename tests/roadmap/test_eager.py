@@ -138,7 +138,7 @@ def test_the_planner_s_own_layers():
 
 
 def test_bad_layers_and_parameters_are_refused():
-    with pytest.raises(GeometryError, match="configurations of 3 numbers"):
+    with pytest.raises(GeometryError, match="configurations of 3 finite numbers"):
         eager_roadmap(pillars(2), [0.0, 0.0])
     with pytest.raises(PlannerError, match="axis: expected 0 to 1, got 2"):
         eager_roadmap(pillars(2), [0.0, 0.0, 0.0], RoadmapParameters(axis=2))

@@ -216,7 +216,7 @@ def test_the_distance_of_a_fixed_arm_is_that_of_what_moves():
     distance = draw(PlanResult(scenario, "by hand", "solved", path=path)).axes[2]
     curve, least = distance.get_lines()
     assert scenario.cspace().clearance(scenario.goal) == pytest.approx(0.1)
-    assert np.ptp(curve.get_ydata()) > 0.3
+    assert np.min(curve.get_ydata()) > 0.5
     assert least.get_xdata() == [0.0]
     assert distance.get_title(loc="right").endswith("not drawn: what does not move, 0.1")
     assert not distance.texts

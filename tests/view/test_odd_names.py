@@ -73,9 +73,9 @@ def test_figures_show_dollars():
 
 
 def test_no_cell_of_a_csv_is_a_formula():
-    odd = [FORMULA, "+1+1", "-x,y", "@sum(A1)", "\t=1", "\r=1", "plain", "-1.5", -1.5, None]
+    odd = [FORMULA, "+1+1", "-cmd", "@sum(A1)", "\t=1", "\r=1", "plain", "-1.5", -1.5, None]
     (row,) = csv.reader(io.StringIO(csv_text([odd]), newline=""))
-    texts = ["'=1+1", "'+1+1", "'-x,y", "'@sum(A1)", "'\t=1", "'\r=1", "plain"]
+    texts = ["'=1+1", "'+1+1", "'-cmd", "'@sum(A1)", "'\t=1", "'\r=1", "plain"]
     assert row == [*texts, "-1.5", "-1.5", ""]
 
 

@@ -8,10 +8,12 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, StrictStr, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from ellipsoid_planning.scenario_blocks import Block, Name, NotNegative, Number, Positive
+from ellipsoid_planning.scenario_blocks import Block, Name, NotNegative, Number
 from ellipsoid_planning.scenario_format import whole
 from ellipsoid_planning.scenario_format_robot import RobotBlock
 
+# Cells and steps have ranges of their own (see model_build).
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
 Lengths = Annotated[list[Positive], Field(min_length=2, max_length=3)]
 
 

@@ -189,7 +189,7 @@ def load_result(path: str | Path) -> PlanResult:
         raise ResultError(f"{path}: cannot read the result: {reason}") from None
     try:
         data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # also an integer of thousands of digits
         place = f":{error.lineno}:{error.colno}" if isinstance(error, json.JSONDecodeError) else ""
         raise ResultError(f"{path}{place}: broken JSON; plan again to get a whole file") from None
     if halved_text(text, data) is not None:

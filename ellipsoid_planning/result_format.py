@@ -64,6 +64,9 @@ class _Reader:
             raise self._error(field, error.problem) from None
 
     def _time(self, entry: Mapping[str, Any]) -> dict[str, float | None]:
+        if "planning" not in entry and "simplification" not in entry:
+            # Files of before these were told apart: their total is the planner's alone.
+            entry = {**entry, "planning": entry.get("total"), "simplification": None}
         return {key: self._optional(entry, key, float, "time.") for key in TIMES}
 
     def _path(self, document: Mapping[str, Any], robot: Robot, status: str) -> PathResult | None:

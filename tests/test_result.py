@@ -100,6 +100,13 @@ def test_wrong_entries_are_named(tmp_path, keys, value, words):
     assert str(file) in str(caught.value)
 
 
+def test_times_of_before_they_were_told_apart_are_read():
+    document = json.loads(solved().to_json())
+    document["time"] = {"total": 0.25, "build": None, "search": None}
+    time = PlanResult.from_dict(document).time
+    assert (time["planning"], time["simplification"], time["total"]) == (0.25, None, 0.25)
+
+
 def test_missing_entries_are_named():
     for key in ("format", "scenario", "planner", "status", "time", "path", "statistics"):
         document = json.loads(solved().to_json())
@@ -108,7 +115,7 @@ def test_missing_entries_are_named():
             PlanResult.from_dict(document)
 
 
-@pytest.mark.parametrize("text", ["", "{", "[1]", "3", "[" * 100000])
+@pytest.mark.parametrize("text", ["", "{", "[1]", "3", "[" * 100000, "9" * 5000])
 def test_files_that_are_no_result(tmp_path, text):
     (tmp_path / "bad.json").write_text(text)
     with pytest.raises(ResultError, match=r"bad\.json"):
